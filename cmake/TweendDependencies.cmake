@@ -1,0 +1,23 @@
+# Everything comes from Debian 12's packages; `./dev setup` holds the list of their names.
+find_package(Threads REQUIRED)
+find_package(Boost 1.81 REQUIRED)            # Asio and Beast, header-only
+find_package(spdlog REQUIRED)
+find_package(hwy REQUIRED)
+find_package(PkgConfig REQUIRED)
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+find_path(TWEEND_GLM_DIR glm/glm.hpp REQUIRED)
+find_path(TWEEND_JSON_DIR nlohmann/json.hpp REQUIRED)
+find_path(TWEEND_CLI11_DIR CLI/CLI.hpp REQUIRED)
+if(TWEEND_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()
+if(TWEEND_BENCH)
+  find_package(benchmark REQUIRED)
+endif()
+
+# Use ccache where it is installed: a second build from nothing then takes seconds.
+find_program(TWEEND_CCACHE ccache)
+if(TWEEND_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${TWEEND_CCACHE}")
+endif()

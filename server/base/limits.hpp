@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace tweend {
+
+/// What nobody may exceed; each is an option of `tweend serve` with these defaults (docs/PROTOCOL.md, section 5.3).
+struct Limits {
+  std::size_t connections = 10'000;
+  std::size_t message_bytes = 16U << 20U;  ///< a JSON message, in
+  std::size_t json_depth = 64;
+  std::size_t batch_requests = 4'096;
+  std::size_t streams_per_connection = 64;
+  std::size_t scenes = 256;
+  std::size_t actors_per_scene = 1'024;
+  std::size_t vertices_per_actor = 4'000'000;
+  std::size_t keyframes_per_clip = 100'000;
+  std::size_t clips_per_actor = 1'024;
+  std::size_t undo_steps = 1'000;
+  std::size_t asset_bytes = 256U << 20U;  ///< one asset's files together
+};
+
+}  // namespace tweend
