@@ -1,0 +1,76 @@
+// The whole layer runs inside the frame loop: a call that succeeds must not touch the heap.
+// This program's operator new counts.
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "server/animation/blend_vertices.hpp"
+#include "server/animation/key_blend.hpp"
+#include "server/animation/vertex_normals.hpp"
+#include "server/animation/vertex_tangents.hpp"
+
+namespace {
+
+thread_local std::size_t allocations = 0;
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  std::abort();
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace tweend::animation {
+namespace {
+
+TEST(Allocation, TheCounterCounts) {
+  const std::size_t before = allocations;
+  const std::vector<int> some(100);
+  EXPECT_GT(allocations, before) << some.size();
+}
+
+TEST(Allocation, SuccessTakesNoMemory) {
+  constexpr std::size_t kFloats = 3 * 1001;
+  const std::vector<float> stream(kFloats, 0.25F);
+  const std::vector<float> texcoords(kFloats / 3 * 2, 0.5F);
+  const std::vector<std::uint32_t> indices{0, 1, 2, 3, 4, 5};
+  std::vector<float> positions(kFloats), normals(kFloats), tangents(kFloats);
+  const std::array<VertexAttributes, 4> sources{
+      VertexAttributes{stream, stream, stream}, VertexAttributes{stream, stream, stream},
+      VertexAttributes{stream, stream, stream}, VertexAttributes{stream, stream, stream}};
+  const std::array times_s{0.0, 1.0, 3.0, 4.0};
+  const KeyTimeline timeline{times_s, 5.0, true};
+  const CubicBezier easing{0.25F, 0.1F, 0.25F, 1.0F};
+  bool all_succeeded = true;
+
+  const std::size_t before = allocations;
+  for (int quarter = 0; quarter <= 20; ++quarter) {
+    const double t = quarter / 4.0;
+    for (const Interpolation mode : {Interpolation::Step, Interpolation::Linear, Interpolation::CatmullRom}) {
+      const KeyBlend blend = blend_keys(timeline, locate(timeline, t), mode, &easing);
+      const Status status = blend_vertices(std::span(sources).first(blend.count), std::span(blend.weight).first(blend.count),
+                                           blend.nearest, {positions, normals, tangents});
+      all_succeeded = all_succeeded && status;
+    }
+  }
+  all_succeeded = all_succeeded && compute_normals(stream, indices, normals);
+  all_succeeded = all_succeeded && compute_tangents(stream, normals, texcoords, indices, tangents);
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(all_succeeded);
+}
+
+}  // namespace
+}  // namespace tweend::animation
