@@ -1,0 +1,129 @@
+#include "server/assets/asset_library.hpp"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <map>
+#include <new>
+#include <utility>
+
+#include "server/assets/asset_name.hpp"
+#include "server/assets/obj_reader.hpp"
+
+namespace tweend::assets {
+namespace {
+
+constexpr int kMaxDepth = 16;
+constexpr std::string_view kExpected = "expected a .obj file or a folder of NAME_000000.obj files";
+
+using Found = std::map<std::string, AssetInfo, std::less<>>;
+
+void add(Found& found, std::string name, std::string type, std::uint64_t bytes) {
+  AssetInfo info{name, std::move(type), bytes};
+  found.try_emplace(std::move(name), std::move(info));  // an earlier folder's asset stays
+}
+
+/// Adds what is in the folder `name` and, unless it's reached by a link (which may lead back up), below it.
+Status collect(const AssetRoot& root, const std::string& name, bool link, int depth, Found& found) {
+  TWEEND_ASSIGN(std::vector<AssetEntry> entries, root.list_folder(name));
+  const AssetFolder folder = sort_entries(name, std::move(entries));
+  if (name.empty()) {
+    for (const SequenceFile& file : folder.members) add(found, file.name, "obj", file.bytes);
+  } else if (!folder.members.empty()) {
+    add(found, name, "obj_sequence", total_bytes(folder.members));
+  }
+  if (link) return {};
+  for (const AssetEntry& file : folder.objs) add(found, join_name(name, file.name), "obj", file.bytes);
+  if (depth == kMaxDepth) return {};
+  for (const AssetEntry& subfolder : folder.subfolders) {
+    // What can't be read, or went away meanwhile, must not hide everything else.
+    static_cast<void>(collect(root, join_name(name, subfolder.name), subfolder.link, depth + 1, found));
+  }
+  return {};
+}
+
+Error too_many_bytes(std::string_view name, std::size_t max_bytes) {
+  return fail(ErrorCode::Limit,
+              fmt::format("{}: expected at most {} bytes of files, found more", quoted_name(name), max_bytes));
+}
+
+}  // namespace
+
+AssetLibrary::AssetLibrary(std::vector<AssetRoot> roots, Limits limits) : roots_(std::move(roots)), limits_(limits) {}
+
+Result<std::vector<AssetInfo>> AssetLibrary::list() const {
+  Found found;
+  for (const AssetRoot& root : roots_) TWEEND_TRY(collect(root, "", false, 0, found));
+  std::vector<AssetInfo> assets;
+  assets.reserve(found.size());
+  for (auto& [name, info] : found) assets.push_back(std::move(info));
+  return assets;
+}
+
+Result<ImportedModel> AssetLibrary::import(std::string_view name) const {
+  try {
+    return find_and_import(name);
+  } catch (const std::bad_alloc&) {
+    return fail(ErrorCode::Unavailable, fmt::format("there is not enough memory to import {}", quoted_name(name)));
+  }
+}
+
+Result<ImportedModel> AssetLibrary::find_and_import(std::string_view name) const {
+  bool other_folder = false;  // a folder of that name that is no sequence: a later root may hold one that is
+  for (const AssetRoot& root : roots_) {
+    auto imported = import_from(root, name);
+    if (!imported && imported.error().code == ErrorCode::NotFound) continue;
+    if (!imported) return imported.error();
+    if (imported->has_value()) return std::move(**imported);
+    other_folder = true;
+  }
+  if (other_folder)
+    return fail(ErrorCode::BadAsset, fmt::format("{}, found {} to be a folder without any", kExpected, quoted_name(name)));
+  return fail(ErrorCode::NotFound, fmt::format("there is no asset {}: asset.list tells those there are", quoted_name(name)));
+}
+
+/// Nothing where `name` is a folder, but not a sequence.
+Result<std::optional<ImportedModel>> AssetLibrary::import_from(const AssetRoot& root, std::string_view name) const {
+  TWEEND_ASSIGN(const AssetEntry entry, root.find(name));
+  if (entry.directory) {
+    TWEEND_ASSIGN(std::vector<AssetEntry> entries, root.list_folder(name));
+    AssetFolder folder = sort_entries(name, std::move(entries));
+    if (folder.members.empty()) return std::optional<ImportedModel>();
+    TWEEND_ASSIGN(ImportedModel sequence, import_sequence(root, name, std::move(folder.members)));
+    return std::optional(std::move(sequence));
+  }
+  if (!has_extension(name, ".obj")) return fail(ErrorCode::BadAsset, fmt::format("{}, found {}", kExpected, quoted_name(name)));
+  TWEEND_ASSIGN(ImportedModel model, import_file(root, name));
+  return std::optional(std::move(model));
+}
+
+Result<ImportedModel> AssetLibrary::import_file(const AssetRoot& root, std::string_view name) const {
+  TWEEND_ASSIGN(const std::string text, root.read_file(name, limits_.asset_bytes));
+  TWEEND_ASSIGN(const ObjFile file, read_obj(text, std::string(name), limits_));
+  constexpr std::int64_t kFrame = 0;
+  return build_obj_model(std::string(name), {&file, 1}, {&kFrame, 1}, limits_);
+}
+
+Result<ImportedModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
+                                                    std::vector<SequenceFile> members) const {
+  TWEEND_ASSIGN(members, order_sequence(std::move(members)));
+  if (total_bytes(members) > limits_.asset_bytes) return too_many_bytes(name, limits_.asset_bytes);
+  if (members.size() > limits_.keyframes_per_clip) {
+    return fail(ErrorCode::Limit, fmt::format("{}: expected at most {} files, found {}", quoted_name(name),
+                                              limits_.keyframes_per_clip, members.size()));
+  }
+  std::vector<ObjFile> files;
+  std::vector<std::int64_t> frames;
+  std::size_t bytes_left = limits_.asset_bytes;
+  for (const SequenceFile& member : members) {
+    // The listing's lengths may be old by now.
+    TWEEND_ASSIGN(const std::string text, root.read_file(member.name, bytes_left));
+    bytes_left -= text.size();
+    TWEEND_ASSIGN(ObjFile file, read_obj(text, member.name, limits_));
+    files.push_back(std::move(file));
+    frames.push_back(member.frame);
+  }
+  return build_obj_model(std::string(name), files, frames, limits_);
+}
+
+}  // namespace tweend::assets

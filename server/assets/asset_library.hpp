@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "server/assets/asset_folder.hpp"
+#include "server/assets/asset_root.hpp"
+#include "server/assets/obj_sequence.hpp"
+#include "server/base/limits.hpp"
+#include "server/base/result.hpp"
+
+namespace tweend::assets {
+
+struct AssetInfo {
+  std::string name;         ///< the path under its assets folder
+  std::string type;         ///< "obj" or "obj_sequence"
+  std::uint64_t bytes = 0;  ///< of all its files
+};
+
+/// The assets of all assets folders, of which an earlier one hides a later one's asset of the same name.
+///
+/// An asset is a .obj file, or a folder of NAME_000000.obj files: a sequence, in which the number is the frame.
+/// A sequence's files are not listed each, but may be imported each. Files named so in an assets folder itself make
+/// no sequence, which would have no name. Dot files and what lies under dot folders are not listed.
+///
+/// Nothing is kept between calls. Const methods are safe from any thread; they block on the disk and, for import,
+/// compute for a good while: call them from a worker.
+class AssetLibrary {
+ public:
+  AssetLibrary(std::vector<AssetRoot> roots, Limits limits);
+
+  /// Sorted by name. Symbolic links to folders are listed where they are sequences, never walked. Folders that can't
+  /// be read, and those deeper than 16, are passed over.
+  /// @return BadAsset if an assets folder itself can't be read
+  [[nodiscard]] Result<std::vector<AssetInfo>> list() const;
+
+  /// Reads the asset anew.
+  /// @return NotFound; BadAsset naming file and line; Limit (Limits::asset_bytes, vertices_per_actor,
+  ///         keyframes_per_clip); Unavailable if memory runs out
+  [[nodiscard]] Result<ImportedModel> import(std::string_view name) const;
+
+ private:
+  [[nodiscard]] Result<ImportedModel> find_and_import(std::string_view name) const;
+  [[nodiscard]] Result<std::optional<ImportedModel>> import_from(const AssetRoot& root, std::string_view name) const;
+  [[nodiscard]] Result<ImportedModel> import_file(const AssetRoot& root, std::string_view name) const;
+  [[nodiscard]] Result<ImportedModel> import_sequence(const AssetRoot& root, std::string_view name,
+                                                      std::vector<SequenceFile> members) const;
+
+  std::vector<AssetRoot> roots_;
+  Limits limits_;
+};
+
+}  // namespace tweend::assets

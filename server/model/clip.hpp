@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/animation/interpolation.hpp"
+#include "server/animation/key_timeline.hpp"
+#include "server/model/vertex_key.hpp"
+
+namespace tweend::model {
+
+using KeyframeId = std::int64_t;
+
+/// Two keyframes nearer than this are one (docs/PROTOCOL.md, section 5.1).
+inline constexpr double kSameTimeSeconds = 1e-6;
+
+/// What a clip's keyframes hold; None until the first one says.
+enum class ClipType : std::uint8_t { None, Vertex };
+
+/// A keyframe; its time stands in Clip::times_s at the same index.
+struct Keyframe {
+  KeyframeId id = 0;  ///< unique in its scene, never reused
+  /// How it blends towards the next keyframe; empty: as the actor, then the clip says.
+  std::optional<animation::Interpolation> interpolation;
+  std::optional<animation::CubicBezier> easing;
+  VertexKeyPtr vertices;
+  bool operator==(const Keyframe&) const = default;
+};
+
+/// What can be said of a clip beside its keyframes.
+struct ClipSettings {
+  bool closed = false;
+  /// Seconds, beyond the last keyframe; empty: the clip ends with its last keyframe, a closed one a mean key spacing later.
+  std::optional<double> duration_s;
+  std::optional<animation::Interpolation> interpolation;
+  bool operator==(const ClipSettings&) const = default;
+};
+
+/// Named keyframes in ascending order of time. A value: held as shared_ptr<const Clip>, copied to be changed
+/// (times and pointers, never vertices).
+struct Clip {
+  std::string name;
+  ClipSettings settings;
+  ClipType declared_type = ClipType::None;  ///< by clip.create; keyframes say it better
+  std::vector<double> times_s;              ///< ascending, at least kSameTimeSeconds apart, each >= 0
+  std::vector<Keyframe> keyframes;          ///< one for each time
+
+  /// What its keyframes hold; of an empty clip, what was declared.
+  [[nodiscard]] ClipType type() const noexcept { return keyframes.empty() ? declared_type : ClipType::Vertex; }
+  /// Seconds; 0 for an empty clip.
+  [[nodiscard]] double duration_s() const noexcept;
+  /// Precondition: there is a keyframe.
+  [[nodiscard]] animation::KeyTimeline timeline() const noexcept { return {times_s, duration_s(), settings.closed}; }
+  [[nodiscard]] std::optional<std::size_t> index_of(KeyframeId id) const noexcept;
+  /// Where a keyframe at `time_s` would stand.
+  [[nodiscard]] std::size_t place_of(double time_s) const noexcept;
+};
+
+using ClipPtr = std::shared_ptr<const Clip>;
+
+}  // namespace tweend::model

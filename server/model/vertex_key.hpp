@@ -1,0 +1,55 @@
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "server/animation/vertex_attributes.hpp"
+#include "server/base/result.hpp"
+#include "server/model/content_hash.hpp"
+#include "server/model/mesh.hpp"
+
+namespace tweend::model {
+
+/// An axis-aligned box in model space, metres.
+struct Bounds {
+  glm::vec3 min{0.0F};
+  glm::vec3 max{0.0F};
+  bool operator==(const Bounds&) const = default;
+};
+
+/// The whole mesh at one instant (seed: "snapshots of a mesh with different poses"), in model space:
+/// one block of positions, then unit normals, then, where the mesh has texture coordinates, unit tangents,
+/// each 3 floats a vertex. Immutable, shared by all revisions and readers, named by its content.
+class VertexKey {
+ public:
+  /// Normals are scaled to unit length; those not given, and zero ones, are computed from the mesh's triangles,
+  /// weighted by area. Tangents are computed where the mesh has texture coordinates.
+  /// @param positions  shape [vertex_count × 3], finite, metres
+  /// @param normals    the same shape, finite; or empty
+  /// @return InvalidParams naming both counts, or the first number that is not finite. The error's path is
+  ///         "positions" or "normals", for the caller to put behind its own.
+  [[nodiscard]] static Result<std::shared_ptr<const VertexKey>> make(const Mesh& mesh, std::span<const float> positions,
+                                                                     std::span<const float> normals = {});
+
+  [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
+  [[nodiscard]] std::span<const float> positions() const noexcept;
+  [[nodiscard]] std::span<const float> normals() const noexcept;
+  /// Empty where the mesh has no texture coordinates.
+  [[nodiscard]] std::span<const float> tangents() const noexcept;
+  [[nodiscard]] animation::VertexAttributes attributes() const noexcept;
+  [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
+  [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
+
+ private:
+  VertexKey() = default;
+  std::size_t vertex_count_ = 0;
+  std::vector<float> block_;
+  Bounds bounds_;
+  ContentHash hash_;
+};
+
+using VertexKeyPtr = std::shared_ptr<const VertexKey>;
+
+}  // namespace tweend::model
