@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/base/metrics.hpp"
+#include "server/base/worker_pool.hpp"
+#include "server/stage/stage.hpp"
+#include "server/streams/producer.hpp"
+
+namespace tweend::streams {
+
+/// Who shares what: one producer for each set of parameters that somebody has subscribed to.
+/// Public functions run on the stage's strand (post to it) unless they say otherwise.
+class Hub {
+ public:
+  /// @param deliver  posts to the thread on which sinks are called
+  Hub(stage::Stage& stage, WorkerPool& workers, Post deliver, Metrics& metrics);
+
+  /// The first packet follows at once. An actor that has gone meanwhile ends the stream.
+  void subscribe(const StreamKey& key, Subscription subscription);
+  void unsubscribe(const StreamKey& key, const PacketSink* sink, std::uint32_t stream);
+
+  /// The stage has published a view (null: the scene is gone).
+  void follow(const std::string& scene, const stage::SceneViewPtr& view);
+  /// Calls `then` once every producer of the scene has delivered a packet that shows `view` or a later one.
+  void after_delivery(const stage::SceneViewPtr& view, std::function<void()> then);
+  /// Ends all producers, before the strand stops.
+  void stop();
+
+ private:
+  struct Waiter {
+    std::string scene;
+    std::uint64_t serial;
+    std::function<void()> then;
+  };
+  void progressed();
+  [[nodiscard]] bool delivered(const Waiter& waiter) const;
+  void drop_idle();
+
+  stage::Stage& stage_;
+  WorkerPool& workers_;
+  Post deliver_;
+  Metrics& metrics_;
+  std::map<StreamKey, std::shared_ptr<Producer>> producers_;
+  std::vector<Waiter> waiters_;
+  std::uint64_t last_source_ = 0;
+};
+
+}  // namespace tweend::streams
