@@ -1,0 +1,89 @@
+#include "server/app/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+
+#include "server/commands/command_table.hpp"
+
+namespace tweend::app {
+namespace {
+
+void add_serve_options(CLI::App& serve, ServeOptions& o) {
+  serve.add_option("--listen", o.listen, "Address and port; port 0 lets the system pick one")
+      ->type_name("ADDR:PORT")
+      ->capture_default_str();
+  serve.add_option("--port-file", o.port_file, "Write the port here once it is open")->type_name("FILE");
+  serve.add_option("--data", o.data, "The data folder; a folder serves one server")->type_name("DIR");
+  serve.add_option("--assets", o.assets, "A folder of assets; may be given several times")
+      ->type_name("DIR")
+      ->allow_extra_args(false);
+  serve
+      .add_option("--load", o.load,
+                  "Add an actor with this asset to the scene main, unless it is there; may be given several times")
+      ->type_name("ASSET")
+      ->allow_extra_args(false);
+  serve.add_flag("--play", o.play, "Play what was loaded");
+  serve.add_flag("--no-auth", o.no_auth, "Everyone may do everything; the only way in this version, and on loopback only");
+  serve
+      .add_option("--allow-origin", o.allowed_origins,
+                  "Pages of this origin may speak to the server, e.g. https://studio.example")
+      ->type_name("ORIGIN")
+      ->allow_extra_args(false);
+}
+
+void add_limit_options(CLI::App& serve, Limits& l) {
+  const auto add = [&serve](const char* name, std::size_t& value, const char* help) {
+    serve.add_option(name, value, help)->type_name("N")->capture_default_str()->check(CLI::PositiveNumber)->group("Limits");
+  };
+  add("--max-connections", l.connections, "Connections");
+  add("--max-message-bytes", l.message_bytes, "Bytes of a JSON message");
+  add("--max-json-depth", l.json_depth, "Nesting of JSON");
+  add("--max-batch", l.batch_requests, "Requests in a batch");
+  add("--max-streams", l.streams_per_connection, "Streams a connection");
+  add("--max-scenes", l.scenes, "Scenes");
+  add("--max-actors", l.actors_per_scene, "Actors a scene");
+  add("--max-vertices", l.vertices_per_actor, "Vertices an actor");
+  add("--max-clips", l.clips_per_actor, "Clips an actor");
+  add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
+  add("--max-undo", l.undo_steps, "Steps that can be undone");
+  add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");
+}
+
+void print_commands() {
+  for (const commands::Command& c : commands::command_table()) {
+    std::cout << c.name << '\t' << commands::role_name(c.role) << '\t' << c.summary << '\n';
+  }
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, char** argv) {
+  CommandLine line;
+  CLI::App app{"tweend: headless keyframe-animation playback server"};
+  app.set_version_flag("--version", std::string("tweend ") + TWEEND_VERSION);
+  bool list_commands = false;
+  app.add_flag("--list-commands", list_commands, "Print every method with its role and meaning");
+  app.require_subcommand(0, 1);
+  CLI::App& serve = *app.add_subcommand("serve", "Open the port and serve until SIGTERM or SIGINT");
+  add_serve_options(serve, line.options);
+  add_limit_options(serve, line.options.limits);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const bool asked = error.get_exit_code() == 0;  // --help, --version
+    app.exit(error, std::cout, std::cerr);
+    line.exit_code = asked ? 0 : 2;
+    return line;
+  }
+  if (list_commands) {
+    print_commands();
+  } else if (serve.parsed()) {
+    line.serve = true;
+  } else {
+    std::cerr << app.help();
+    line.exit_code = 2;
+  }
+  return line;
+}
+
+}  // namespace tweend::app

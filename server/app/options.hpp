@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "server/base/limits.hpp"
+#include "server/net/network.hpp"
+
+namespace tweend::app {
+
+/// What `tweend serve` was asked for.
+struct ServeOptions {
+  std::string listen = "127.0.0.1:8933";
+  std::string port_file;
+  std::string data;
+  std::vector<std::string> assets;
+  std::vector<std::string> load;
+  std::vector<std::string> allowed_origins;
+  bool play = false;
+  bool no_auth = false;
+  Limits limits;
+};
+
+/// What the command line asked for: to serve, or to end at once with a code (help, version, a mistake).
+struct CommandLine {
+  bool serve = false;
+  int exit_code = 0;
+  ServeOptions options;
+};
+
+/// Reads the command line; prints help, version, the methods or what was wrong.
+[[nodiscard]] CommandLine parse_command_line(int argc, char** argv);
+
+}  // namespace tweend::app

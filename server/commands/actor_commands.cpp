@@ -1,0 +1,205 @@
+#include <fmt/format.h>
+
+#include <memory>
+
+#include "server/commands/command_table.hpp"
+#include "server/commands/edit_helpers.hpp"
+
+namespace tweend::commands {
+namespace {
+
+struct MeshParams {
+  static constexpr std::string_view kName = "Mesh";
+  std::vector<float> positions;
+  std::optional<std::vector<float>> normals;
+  std::vector<std::uint32_t> indices;
+  static void describe(FieldList<MeshParams>& f) {
+    using T = MeshParams;
+    f.add<&T::positions>("positions", "x, y, z of each vertex, metres.");
+    f.add<&T::normals>("normals", "x, y, z of each vertex; computed if left out.");
+    f.add<&T::indices>("indices", "Three a triangle, counter-clockwise fronts.");
+  }
+};
+
+struct ActorAddParams : EditTarget {
+  static constexpr std::string_view kName = "ActorAddParams";
+  protocol::Name actor;
+  std::optional<std::string> asset;
+  std::optional<MeshParams> mesh;
+  std::optional<double> fps;
+  std::optional<bool> closed;
+  std::optional<double> duration;
+  std::optional<TransformParams> transform;
+  std::optional<Interpolation> interpolation;
+  static void describe(FieldList<ActorAddParams>& f) {
+    using T = ActorAddParams;
+    add_edit_fields(f);
+    f.add<&T::actor>("actor", "The new actor's name.");
+    f.add<&T::asset>("asset", "An asset's name (asset.list has them); or give mesh.");
+    f.add<&T::mesh>("mesh", "A mesh; its clip `default` is empty at first. Or give asset.");
+    f.add<&T::fps>("fps", "Frames a second of an OBJ sequence; 24 if left out.",
+                   {.min = 0.0, .max = 10'000.0, .min_excluded = true});
+    f.add<&T::closed>("closed", "Whether the clip blends from its last keyframe back to the first.");
+    f.add<&T::duration>("duration", "Of the clip, seconds.", protocol::kPositive);
+    f.add<&T::transform>("transform", "Where it stands.");
+    f.add<&T::interpolation>("interpolation", "For all its clips, where a keyframe says no other.");
+  }
+  [[nodiscard]] Status check() const {
+    if (asset.has_value() == mesh.has_value()) {
+      return fail(ErrorCode::InvalidParams, fmt::format("expected asset or mesh, found {}", asset ? "both" : "neither"),
+                  asset ? "mesh" : "asset");
+    }
+    if (mesh && fps) return fail(ErrorCode::InvalidParams, "expected fps with an OBJ sequence, found it with a mesh", "fps");
+    return {};
+  }
+};
+
+struct ActorAddResult {
+  static constexpr std::string_view kName = "ActorAdded";
+  std::string actor;
+  std::vector<std::string> clips;
+  std::uint64_t vertices = 0;
+  std::uint64_t joints = 0;
+  std::uint64_t revision = 0;
+  static void describe(FieldList<ActorAddResult>& f) {
+    using T = ActorAddResult;
+    f.add<&T::actor>("actor", "Its name.");
+    f.add<&T::clips>("clips", "Names of its clips.");
+    f.add<&T::vertices>("vertices", "How many.");
+    f.add<&T::joints>("joints", "How many.");
+    f.add<&T::revision>("revision", "The scene's new revision.");
+  }
+};
+
+struct ActorUpdateParams : EditTarget {
+  static constexpr std::string_view kName = "ActorUpdateParams";
+  std::optional<std::string> actor;
+  std::optional<TransformParams> transform;
+  Nullable<Interpolation> interpolation;
+  std::optional<bool> visible;
+  std::optional<double> spin;
+  static void describe(FieldList<ActorUpdateParams>& f) {
+    using T = ActorUpdateParams;
+    add_edit_fields(f);
+    add_actor_field(f);
+    f.add<&T::transform>("transform", "Where it stands; what is left out stays.");
+    f.add<&T::interpolation>("interpolation", "For all its clips; null: let them say.");
+    f.add<&T::visible>("visible", "Whether it is drawn.");
+    f.add<&T::spin>("spin", "Radians a second about +Y while playing.");
+  }
+};
+
+struct ActorRemoveParams : EditTarget {
+  static constexpr std::string_view kName = "ActorRemoveParams";
+  std::string actor;
+  static void describe(FieldList<ActorRemoveParams>& f) {
+    add_edit_fields(f);
+    f.add<&ActorRemoveParams::actor>("actor", "Name of the actor.");
+  }
+};
+
+/// What an asset or a mesh parameter comes to: worked out once, on a worker.
+struct Source {
+  std::string name;
+  model::MeshPtr mesh;
+  model::VertexKeyPtr rest;
+  std::vector<assets::ImportedKey> keys;
+};
+
+Result<Source> import_asset(const std::string& name, const Services& services) {
+  auto imported = services.assets.import(name);
+  if (!imported) return fail(imported.error().code, imported.error().message, "params.asset");
+  model::VertexKeyPtr rest = imported->keys.front().vertices;
+  return Source{std::move(imported->source), std::move(imported->mesh), std::move(rest), std::move(imported->keys)};
+}
+
+Result<Source> make_mesh(const MeshParams& p, const Services& services) {
+  const std::size_t vertices = p.positions.size() / 3;
+  if (vertices > services.limits.vertices_per_actor) {
+    return fail(ErrorCode::Limit,
+                fmt::format("expected at most {} vertices, found {}", services.limits.vertices_per_actor, vertices),
+                "params.mesh.positions");
+  }
+  auto mesh = model::Mesh::make(vertices, p.indices);
+  if (!mesh)
+    return fail(mesh.error().code, mesh.error().message, vertices == 0 ? "params.mesh.positions" : "params.mesh.indices");
+  auto rest =
+      model::VertexKey::make(**mesh, p.positions, p.normals ? std::span<const float>(*p.normals) : std::span<const float>());
+  if (!rest) return fail(rest.error().code, rest.error().message, "params.mesh." + rest.error().path);
+  return Source{"mesh", *mesh, *rest, {}};
+}
+
+Result<model::Clip> make_clip(const ActorAddParams& p, const Source& source, stage::Transaction& transaction) {
+  model::Clip clip;
+  clip.name = "default";
+  clip.settings = {p.closed.value_or(false), p.duration, {}};
+  const double fps = p.fps.value_or(24.0);
+  for (const assets::ImportedKey& key : source.keys) {
+    clip.times_s.push_back(key.frame / fps);
+    clip.keyframes.push_back({transaction.new_keyframe_id(), {}, {}, key.vertices});
+  }
+  TWEEND_TRY(check_duration(clip));
+  return clip;
+}
+
+Result<ActorAddResult> add_actor(const ActorAddParams& p, EditContext& context) {
+  // Cheap refusals first: a file is not read for a name that is taken.
+  if (context.scene().find_actor(p.actor.text)) {
+    return fail(ErrorCode::Conflict, fmt::format("expected a new name, found the actor \"{}\"", p.actor.text), "params.actor");
+  }
+  if (const std::size_t most = context.services.limits.actors_per_scene; context.scene().actors.size() >= most) {
+    return fail(ErrorCode::Limit, fmt::format("expected at most {} actors in a scene, found as many; remove one first", most));
+  }
+  const Result<Source>& source = context.once(
+      "source", [&] { return p.asset ? import_asset(*p.asset, context.services) : make_mesh(*p.mesh, context.services); });
+  if (!source) return source.error();
+  if (source->keys.size() > context.services.limits.keyframes_per_clip) {
+    return fail(ErrorCode::Limit,
+                fmt::format("expected at most {} keyframes in a clip, found {}", context.services.limits.keyframes_per_clip,
+                            source->keys.size()),
+                "params.asset");
+  }
+  model::Actor actor;
+  actor.name = p.actor.text;
+  actor.source = source->name;
+  actor.mesh = source->mesh;
+  actor.rest = source->rest;
+  actor.settings.interpolation = p.interpolation;
+  if (p.transform) p.transform->apply_to(actor.settings.transform);
+  TWEEND_ASSIGN(model::Clip clip, make_clip(p, *source, context.transaction));
+  actor.clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
+
+  ActorAddResult result{actor.name, {"default"}, actor.mesh->vertex_count(), 0, 0};
+  context.transaction.apply(stage::SetActor{actor.name, std::make_shared<const model::Actor>(std::move(actor))});
+  context.transaction.about({result.actor, {}, {}});
+  return result;
+}
+
+Result<RevisionResult> update_actor(const ActorUpdateParams& p, EditContext& context) {
+  TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(context.scene(), p.actor));
+  model::ActorSettings settings = actor->settings;
+  if (p.transform) p.transform->apply_to(settings.transform);
+  settings.interpolation = p.interpolation.value_or(settings.interpolation);
+  settings.visible = p.visible.value_or(settings.visible);
+  settings.spin_rad_s = p.spin.value_or(settings.spin_rad_s);
+  context.transaction.apply(stage::SetActorSettings{actor->name, settings});
+  context.transaction.about({actor->name, {}, {}});
+  return RevisionResult{};
+}
+
+Result<RevisionResult> remove_actor(const ActorRemoveParams& p, EditContext& context) {
+  TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(context.scene(), p.actor));
+  context.transaction.apply(stage::SetActor{actor->name, nullptr});
+  context.transaction.about({actor->name, {}, {}});
+  return RevisionResult{};
+}
+
+}  // namespace
+
+void add_actor_commands(std::vector<Command>& t) {
+  t.push_back(edit_command<&add_actor>("actor.add", Role::Control, "Add a model, from an asset or a mesh.", Shape::HeavyEdit));
+  t.push_back(edit_command<&update_actor>("actor.update", Role::Control, "Move an actor, or change how it is shown."));
+  t.push_back(edit_command<&remove_actor>("actor.remove", Role::Control, "Remove an actor."));
+}
+
+}  // namespace tweend::commands

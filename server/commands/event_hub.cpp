@@ -1,0 +1,120 @@
+#include "server/commands/event_hub.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/envelope.hpp"
+#include "server/commands/wire_types.hpp"
+
+namespace tweend::commands {
+namespace {
+
+struct PlaybackChanged {
+  static constexpr std::string_view kName = "PlaybackChanged";
+  std::string scene;
+  std::vector<PlayerState> players;
+  std::int64_t server_time_us = 0;
+  static void describe(FieldList<PlaybackChanged>& f) {
+    using T = PlaybackChanged;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::players>("players", "The players concerned.");
+    f.add<&T::server_time_us>("server_time_us", "The reading at which these times hold.");
+  }
+};
+
+struct PlaybackEnded {
+  static constexpr std::string_view kName = "PlaybackEnded";
+  std::string scene, actor, clip;
+  static void describe(FieldList<PlaybackEnded>& f) {
+    using T = PlaybackEnded;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::actor>("actor", "Whose player has run out.");
+    f.add<&T::clip>("clip", "The clip it was on.");
+  }
+};
+
+struct SceneChanged {
+  static constexpr std::string_view kName = "SceneChanged";
+  std::string scene;
+  std::uint64_t revision = 0;
+  std::string method;
+  std::optional<std::string> actor, clip;
+  std::optional<std::int64_t> keyframe;
+  static void describe(FieldList<SceneChanged>& f) {
+    using T = SceneChanged;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::revision>("revision", "The scene's new revision.");
+    f.add<&T::method>("method", "The edit.");
+    f.add<&T::actor>("actor", "What it was about.");
+    f.add<&T::clip>("clip", "What it was about.");
+    f.add<&T::keyframe>("keyframe", "What it was about.");
+  }
+};
+
+template <class T>
+std::string notification(std::string_view method, const T& params) {
+  return protocol::notification_json(method, protocol::encode(params));
+}
+
+}  // namespace
+
+EventHub::EventHub(streams::Hub& hub, Post to_network, Metrics& metrics)
+    : hub_(hub), to_network_(std::move(to_network)), metrics_(metrics) {}
+
+void EventHub::subscribe(const std::string& scene, const std::shared_ptr<Peer>& peer) {
+  unsubscribe(scene, peer.get());  // once is enough
+  subscribers_[scene].push_back(peer);
+}
+
+void EventHub::unsubscribe(const std::string& scene, const Peer* peer) {
+  const auto at = subscribers_.find(scene);
+  if (at == subscribers_.end()) return;
+  std::erase_if(at->second, [peer](const std::weak_ptr<Peer>& p) { return p.expired() || p.lock().get() == peer; });
+  if (at->second.empty()) subscribers_.erase(at);
+}
+
+void EventHub::forget(const Peer* peer) {
+  for (auto& [scene, peers] : subscribers_) {
+    std::erase_if(peers, [peer](const std::weak_ptr<Peer>& p) { return p.expired() || p.lock().get() == peer; });
+  }
+  std::erase_if(subscribers_, [](const auto& entry) { return entry.second.empty(); });
+}
+
+void EventHub::tell(std::string scene, std::string json, Order order) {
+  to_network_([this, scene = std::move(scene), shared = std::make_shared<const std::string>(std::move(json)), order] {
+    const auto at = subscribers_.find(scene);
+    if (at == subscribers_.end()) return;
+    for (const std::weak_ptr<Peer>& weak : at->second) {
+      const auto peer = weak.lock();
+      if (!peer) continue;
+      add(metrics_.events_total);
+      order == Order::AfterPackets ? peer->send_after_packets(shared) : peer->send_shared(shared);
+    }
+  });
+}
+
+void EventHub::published(const std::string& scene, const stage::SceneViewPtr& view) { hub_.follow(scene, view); }
+
+void EventHub::edited(const stage::EditEvent& e) {
+  tell(e.scene,
+       notification("scene.changed",
+                    SceneChanged{e.scene, e.revision, e.method, e.subject.actor, e.subject.clip, e.subject.keyframe}),
+       Order::AtOnce);
+}
+
+void EventHub::players_changed(const stage::SceneViewPtr& view, const std::vector<std::size_t>& concerned, ClockUs now_us) {
+  PlayersResult players = players_result(*view, concerned, now_us);
+  tell(view->scene->name,
+       notification("playback.changed", PlaybackChanged{view->scene->name, std::move(players.players), now_us}), Order::AtOnce);
+}
+
+void EventHub::player_ended(const stage::SceneViewPtr& view, std::size_t player) {
+  const stage::Player& p = (*view->players)[player];
+  std::string json = notification("playback.ended", PlaybackEnded{view->scene->name, p.actor, p.clip});
+  // It says that the final value has been sent: first the packets that show it, then the word.
+  hub_.after_delivery(view, [this, scene = view->scene->name, json = std::move(json)]() mutable {
+    tell(std::move(scene), std::move(json), Order::AfterPackets);
+  });
+}
+
+}  // namespace tweend::commands

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "server/base/metrics.hpp"
+#include "server/base/worker_pool.hpp"
+#include "server/commands/peer.hpp"
+#include "server/stage/stage.hpp"
+#include "server/streams/hub.hpp"
+
+namespace tweend::commands {
+
+/// Tells subscribers what has happened: each notification is printed once and shared by all of them.
+///
+/// The stage speaks to it on its strand; the list of subscribers lives on the network thread.
+class EventHub final : public stage::StageListener {
+ public:
+  EventHub(streams::Hub& hub, Post to_network, Metrics& metrics);
+
+  // Network thread:
+  void subscribe(const std::string& scene, const std::shared_ptr<Peer>& peer);
+  void unsubscribe(const std::string& scene, const Peer* peer);
+  void forget(const Peer* peer);
+
+  // Strand (StageListener):
+  void published(const std::string& scene, const stage::SceneViewPtr& view) override;
+  void edited(const stage::EditEvent& event) override;
+  void players_changed(const stage::SceneViewPtr& view, const std::vector<std::size_t>& concerned, ClockUs now_us) override;
+  void player_ended(const stage::SceneViewPtr& view, std::size_t player) override;
+
+ private:
+  enum class Order { AtOnce, AfterPackets };
+  void tell(std::string scene, std::string json, Order order);
+
+  streams::Hub& hub_;
+  Post to_network_;
+  Metrics& metrics_;
+  std::map<std::string, std::vector<std::weak_ptr<Peer>>> subscribers_;  ///< by scene
+};
+
+}  // namespace tweend::commands

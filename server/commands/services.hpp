@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "server/assets/asset_library.hpp"
+#include "server/base/limits.hpp"
+#include "server/base/metrics.hpp"
+#include "server/base/worker_pool.hpp"
+#include "server/commands/event_hub.hpp"
+#include "server/stage/stage.hpp"
+#include "server/streams/hub.hpp"
+
+namespace tweend::commands {
+
+/// What handlers work with. Outlives every conversation.
+struct Services {
+  const Limits& limits;
+  Metrics& metrics;
+  const assets::AssetLibrary& assets;
+  stage::Stage& stage;
+  streams::Hub& hub;
+  EventHub& events;
+  WorkerPool& workers;
+};
+
+}  // namespace tweend::commands

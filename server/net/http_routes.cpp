@@ -1,0 +1,141 @@
+#include "server/net/http_routes.hpp"
+
+#include <fmt/format.h>
+
+#include <boost/asio/as_tuple.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <boost/asio/this_coro.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <memory>
+#include <utility>
+
+#include "protocol/envelope.hpp"
+#include "protocol/utf8.hpp"
+#include "server/commands/command_table.hpp"
+#include "server/commands/conversation.hpp"
+#include "server/net/same_origin.hpp"
+
+namespace tweend::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace http = boost::beast::http;
+
+constexpr std::string_view kText = "text/plain; charset=utf-8";
+constexpr std::string_view kJson = "application/json";
+
+/// The client of one POST /rpc: it gets its answers and nothing else.
+class RpcPeer final : public commands::Peer {
+ public:
+  [[nodiscard]] bool can_push() const noexcept override { return false; }
+  void send(std::string json) override { answer = std::move(json); }
+  void send_shared(std::shared_ptr<const std::string>) override {}
+  void send_after_packets(std::shared_ptr<const std::string>) override {}
+  [[nodiscard]] bool congested() const noexcept override { return false; }
+  void forget_stream(std::uint32_t) override {}
+  void offer(std::uint32_t, const streams::PacketPtr&) override {}
+  void ended(std::uint32_t, const std::string&) override {}
+
+  std::string answer;
+};
+
+std::string_view path_of(std::string_view target) { return target.substr(0, target.find('?')); }
+
+bool is_json(std::string_view content_type) {
+  const auto type = content_type.substr(0, content_type.find(';'));
+  return boost::beast::iequals(type.substr(0, type.find_last_not_of(" \t") + 1), kJson);
+}
+
+asio::awaitable<HttpResponse> answer_rpc(const HttpRequest& request, SessionContext& context) {
+  if (!is_json(request[http::field::content_type])) {
+    co_return http_answer(request, 415, kText, "expected Content-Type: application/json\n");
+  }
+  const auto peer = std::make_shared<RpcPeer>();
+  const auto conversation =
+      std::make_shared<commands::Conversation>(context.services, context.to_network, peer, kEveryonesRole);
+  asio::steady_timer progress(co_await asio::this_coro::executor, asio::steady_timer::time_point::max());
+  conversation->on_progress([&progress] { progress.cancel(); });
+  if (protocol::is_utf8(request.body())) {
+    conversation->receive(request.body());
+  } else {
+    conversation->reject(fail(ErrorCode::Parse, "expected a body of UTF-8, found other bytes"));
+  }
+  while (!conversation->settled()) co_await progress.async_wait(asio::as_tuple(asio::use_awaitable));
+  conversation->close();
+  // Notifications only: there is nothing to say.
+  if (peer->answer.empty()) co_return http_answer(request, 204, {}, {});
+  co_return http_answer(request, 200, kJson, std::move(peer->answer));
+}
+
+std::string welcome() {
+  return fmt::format(
+      "tweend {}\n\nThis port speaks line JSON, HTTP and WebSocket (/ws, subprotocol tweend.v1).\n"
+      "Methods: /openrpc.json · one call: POST /rpc · health: /healthz, /readyz, /metrics\n",
+      TWEEND_VERSION);
+}
+
+HttpResponse answer_get(const HttpRequest& request, std::string_view path, SessionContext& context) {
+  if (path == "/") return http_answer(request, 200, kText, welcome());
+  if (path == "/healthz") return http_answer(request, 200, kText, "ok\n");
+  if (path == "/readyz") {
+    // Documents are loaded before the port opens; while stopping, others should be asked.
+    return context.stopping ? http_answer(request, 503, kText, "stopping\n") : http_answer(request, 200, kText, "ready\n");
+  }
+  if (path == "/metrics") {
+    return http_answer(request, 200, "text/plain; version=0.0.4; charset=utf-8", context.services.metrics.prometheus_text());
+  }
+  if (path == "/openrpc.json") return http_answer(request, 200, kJson, *commands::openrpc_document());
+  return http_answer(request, 404, kText,
+                     fmt::format("expected /, /healthz, /readyz, /metrics, /openrpc.json, /rpc or /ws, found {}\n", path));
+}
+
+}  // namespace
+
+HttpResponse http_answer(const HttpRequest& request, unsigned status, std::string_view content_type, std::string body) {
+  HttpResponse response(static_cast<http::status>(status), request.version());
+  response.keep_alive(request.keep_alive());
+  response.set(http::field::server, "tweend/" TWEEND_VERSION);
+  response.set(http::field::cache_control, "no-store");
+  response.set("X-Content-Type-Options", "nosniff");
+  if (!content_type.empty()) response.set(http::field::content_type, content_type);
+  response.body() = std::move(body);
+  response.prepare_payload();
+  if (request.method() == http::verb::head) response.body().clear();  // the length stays that of the whole
+  return response;
+}
+
+std::string refuse_request(const HttpRequest& request, const SessionContext& context) {
+  std::optional<std::string> origin;
+  const bool upgrade = path_of(request.target()) == "/ws";
+  const bool reads = request.method() == http::verb::get || request.method() == http::verb::head;
+  if (const auto at = request.find(http::field::origin); at != request.end() && (upgrade || !reads))
+    origin = std::string(at->value());
+  return refuse_origin(request[http::field::host], origin, context.allowed_origins);
+}
+
+std::size_t body_limit(std::string_view target, const Limits& limits) noexcept {
+  return path_of(target) == "/rpc" ? limits.message_bytes : 1U << 20U;
+}
+
+asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& context) {
+  const std::string_view path = path_of(request.target());
+  if (path == "/rpc") {
+    if (request.method() == http::verb::post) co_return co_await answer_rpc(request, context);
+    auto response = http_answer(request, 405, kText, "expected POST\n");
+    response.set(http::field::allow, "POST");
+    co_return response;
+  }
+  if (path == "/ws") {
+    auto response = http_answer(request, 426, kText, "expected a WebSocket upgrade\n");
+    response.set(http::field::upgrade, "websocket");
+    co_return response;
+  }
+  if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    auto response = http_answer(request, 405, kText, "expected GET or HEAD\n");
+    response.set(http::field::allow, "GET, HEAD");
+    co_return response;
+  }
+  co_return answer_get(request, path, context);
+}
+
+}  // namespace tweend::net
