@@ -1,0 +1,35 @@
+#include "clients/cli/session.hpp"
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+#include "clients/cli/connection.hpp"
+#include "clients/cli/failure.hpp"
+
+namespace tweend::cli {
+
+Session::Session(const Options& options, const Io& io) : options_(options), io_(io) {}
+Session::~Session() = default;
+
+Json Session::call(std::string_view method, const Json& params) {
+  Connection& server = connection();
+  return server.call(method, params, deadline_in(options_.timeout_s));
+}
+
+Message Session::next(Deadline deadline) { return connection().next(deadline); }
+
+Json Session::scene_params() const { return options_.scene ? Json{{"scene", *options_.scene}} : Json::object(); }
+
+bool Session::print_line(std::string_view line) const {
+  io_.out << line << '\n' << std::flush;
+  return io_.out.good();
+}
+
+Connection& Session::connection() {
+  if (!connection_) {
+    connection_ = std::make_unique<Connection>(parse_endpoint(options_.server), deadline_in(options_.timeout_s));
+  }
+  return *connection_;
+}
+
+}  // namespace tweend::cli

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "clients/cli/exit_code.hpp"
+#include "tests/cli/fake_server.hpp"
+
+namespace tweend::cli::test {
+
+/// What a run of tweenctl left behind.
+struct Outcome {
+  ExitCode code = ExitCode::Done;
+  std::string out;
+  std::string err;
+};
+
+/// Runs tweenctl in this process, without a server.
+[[nodiscard]] Outcome run_alone(std::vector<std::string> arguments, const std::string& in = {});
+
+/// Runs it against a server that plays this script, and checks that the script was played to its end.
+[[nodiscard]] Outcome run_cli(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in = {});
+
+}  // namespace tweend::cli::test
