@@ -12,9 +12,6 @@ if(TWEEND_TESTS)
   find_package(GTest REQUIRED)
   include(GoogleTest)
 endif()
-if(TWEEND_BENCH)
-  find_package(benchmark REQUIRED)
-endif()
 
 # Use ccache where it is installed: a second build from nothing then takes seconds.
 find_program(TWEEND_CCACHE ccache)

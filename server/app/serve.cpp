@@ -14,6 +14,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <iostream>
 #include <thread>
 #include <utility>
@@ -120,6 +121,7 @@ class Server {
 
   Status start(const net::Endpoint& endpoint) {
     TWEEND_TRY(stage_.start(events_));
+    staged_ = true;
     for (const std::string& asset : options_.load) TWEEND_TRY(load_asset(services_, asset));
     if (options_.play) TWEEND_TRY(play_all(services_));
     TWEEND_TRY(network_.start({endpoint, options_.allowed_origins}, services_));
@@ -131,13 +133,20 @@ class Server {
   /// Answers what has been asked, commits what was accepted, stops every thread.
   void stop() {
     network_.stop();
-    stage_.post([this] { hub_.stop(); });
+    if (!staged_) return;
+    std::promise<void> quiet;
+    stage_.post([&] {
+      hub_.stop();
+      quiet.set_value();
+    });
+    quiet.get_future().wait();
+    workers_.stop();  // before the stage, on which evaluations under way still end
     stage_.stop();
-    workers_.stop();
   }
 
  private:
   ServeOptions options_;
+  bool staged_ = false;
   Metrics metrics_;
   assets::AssetLibrary library_;
   store::MemoryStore store_;

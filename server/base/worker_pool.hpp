@@ -21,7 +21,7 @@ class WorkerPool {
 
   /// Safe from any thread. Tasks may not throw.
   void post(Task task);
-  /// Finishes what runs, drops what waits, joins.
+  /// Carries out what waits, joins. Nothing may be posted after.
   void stop();
 
  private:

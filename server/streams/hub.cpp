@@ -8,12 +8,12 @@
 namespace tweend::streams {
 
 Hub::Hub(stage::Stage& stage, WorkerPool& workers, Post deliver, Metrics& metrics)
-    : stage_(stage), workers_(workers), deliver_(std::move(deliver)), metrics_(metrics) {}
+    : stage_(stage), workers_(workers), mailbox_(std::move(deliver)), metrics_(metrics) {}
 
 void Hub::subscribe(const StreamKey& key, Subscription subscription) {
   const stage::SceneViewPtr view = stage_.view()->find(key.scene);
   if (!view || view->find_player(key.actor) == nullptr) {
-    deliver_([subscription = std::move(subscription), key] {
+    mailbox_.call([subscription = std::move(subscription), key] {
       if (const auto sink = subscription.sink.lock()) {
         sink->ended(subscription.stream, fmt::format("the actor \"{}\" of the scene \"{}\" was removed", key.actor, key.scene));
       }
@@ -24,7 +24,7 @@ void Hub::subscribe(const StreamKey& key, Subscription subscription) {
   if (!producer) {
     producer = std::make_shared<Producer>(
         key, ++last_source_, view,
-        Producer::Environment{stage_.strand(), workers_, deliver_, metrics_, [this] { progressed(); }});
+        Producer::Environment{stage_.strand(), workers_, mailbox_, metrics_, [this] { progressed(); }});
     metrics_.producers = static_cast<std::int64_t>(producers_.size());
   }
   producer->add(std::move(subscription));

@@ -44,7 +44,7 @@ class Hub {
 
   stage::Stage& stage_;
   WorkerPool& workers_;
-  Post deliver_;
+  Mailbox mailbox_;
   Metrics& metrics_;
   std::map<StreamKey, std::shared_ptr<Producer>> producers_;
   std::vector<Waiter> waiters_;

@@ -46,7 +46,7 @@ void Producer::add(Subscription subscription) {
   subscriptions_ = std::move(next);
   // The latest packet is as good as new, unless this producer slept through a change before anybody came back.
   if (latest_ && (evaluating_ || evaluated_serial_ == view_->serial)) {
-    deliver(latest_, std::make_shared<const Subscriptions>(Subscriptions{std::move(subscription)}));
+    environment_.mailbox.put({latest_, std::make_shared<const Subscriptions>(Subscriptions{std::move(subscription)})});
   }
   schedule();
 }
@@ -61,7 +61,7 @@ void Producer::remove(const PacketSink* sink, std::uint32_t stream) {
 }
 
 void Producer::end(const std::string& reason) {
-  environment_.deliver([to = std::exchange(subscriptions_, std::make_shared<const Subscriptions>()), reason] {
+  environment_.mailbox.call([to = subscriptions_, reason] {
     for (const Subscription& s : *to) {
       if (const auto sink = s.sink.lock()) sink->ended(s.stream, reason);
     }
@@ -99,56 +99,55 @@ void Producer::tick(ClockUs at_us) {
     tweend::add(environment_.metrics.ticks_missed_total, (now_us - at_us) / period_us);
     at_us = now_us;
   }
-  evaluate(show(at_us), at_us);
+  evaluate(at_us);
 }
 
-void Producer::evaluate(stage::ActorShow show, ClockUs at_us) {
-  const std::size_t vertices = show.actor->mesh->vertex_count();
-  boost::intrusive_ptr<Packet> packet = pool_->take(6 * vertices);
-  packet->source = source_;
-  protocol::PacketHeader& header = packet->header;
-  header.kind = protocol::PacketKind::Vertices;
-  header.encoding = protocol::kVerticesF32;
+void Producer::evaluate(ClockUs at_us) {
+  making_show_ = show(at_us);
+  const stage::ActorShow& show = making_show_;
+  making_ = pool_->take(6 * show.actor->mesh->vertex_count());
+  making_->source = source_;
   const std::uint64_t revision = view_->scene->revision;
   const bool jumped = sequence_ != 0 && (show.continuity != continuity_ || revision != revision_);
+  protocol::PacketHeader& header = making_->header;
+  header.kind = protocol::PacketKind::Vertices;
+  header.encoding = protocol::kVerticesF32;
   header.flags = static_cast<std::uint8_t>(protocol::kFlagKey | (jumped ? protocol::kFlagDiscontinuity : 0) |
                                            (show.moving ? 0 : protocol::kFlagLast));
   header.sequence = sequence_++;
   header.media_us = media_us(show.time_s);
   header.server_us = at_us;
   header.revision = static_cast<std::uint32_t>(revision);
-  header.payload_bytes = static_cast<std::uint32_t>(packet->payload_bytes().size());
+  header.payload_bytes = static_cast<std::uint32_t>(making_->payload_bytes().size());
   continuity_ = show.continuity;
   revision_ = revision;
   settled_ = !show.moving;
   last_at_us_ = at_us;
   evaluated_serial_ = view_->serial;
   evaluating_ = true;
-  environment_.workers.post([self = shared_from_this(), packet, show = std::move(show), serial = evaluated_serial_] {
-    const std::span<float> out(packet->payload);
-    const std::size_t half = out.size() / 2;
-    // The lengths are right by construction: there is nothing to fail.
-    static_cast<void>(model::sample_vertices(*show.actor, *show.clip, show.time_s, {out.first(half), out.subspan(half), {}}));
-    boost::asio::post(self->environment_.strand, [self, packet, serial] { self->finished(packet, serial); });
-  });
+  busy_self_ = shared_from_this();
+  environment_.workers.post([this] { evaluate_on_worker(); });
 }
 
-void Producer::finished(const PacketPtr& packet, std::uint64_t serial) {
+void Producer::evaluate_on_worker() {
+  const std::span<float> out(making_->payload);
+  const std::size_t half = out.size() / 2;
+  const stage::ActorShow& show = making_show_;
+  // The lengths are right by construction: there is nothing to fail.
+  static_cast<void>(model::sample_vertices(*show.actor, *show.clip, show.time_s, {out.first(half), out.subspan(half), {}}));
+  boost::asio::post(environment_.strand, [this] { finished(); });
+}
+
+void Producer::finished() {
+  const std::shared_ptr<Producer> self = std::move(busy_self_);  // may be the last to hold this, once it returns
   evaluating_ = false;
-  latest_ = packet;
+  latest_ = std::move(making_);
+  making_show_ = {};
   tweend::add(environment_.metrics.packets_produced_total);
-  deliver(packet, subscriptions_);
-  delivered_serial_ = serial;
+  environment_.mailbox.put({latest_, subscriptions_});
+  delivered_serial_ = evaluated_serial_;
   environment_.progressed();
   schedule();
-}
-
-void Producer::deliver(const PacketPtr& packet, std::shared_ptr<const Subscriptions> to) {
-  environment_.deliver([packet, to = std::move(to)] {
-    for (const Subscription& s : *to) {
-      if (const auto sink = s.sink.lock()) sink->offer(s.stream, packet);
-    }
-  });
 }
 
 }  // namespace tweend::streams

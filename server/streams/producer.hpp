@@ -12,7 +12,9 @@
 #include "server/base/metrics.hpp"
 #include "server/base/worker_pool.hpp"
 #include "server/stage/show.hpp"
+#include "server/streams/mailbox.hpp"
 #include "server/streams/packet.hpp"
+#include "server/streams/packet_sink.hpp"
 
 namespace tweend::streams {
 
@@ -24,22 +26,6 @@ struct StreamKey {
   auto operator<=>(const StreamKey&) const = default;
 };
 
-/// Where packets go: a connection. Called on the thread that `Hub` was given to deliver on.
-class PacketSink {
- public:
-  virtual ~PacketSink() = default;
-  /// Takes a packet or skips it; never waits.
-  virtual void offer(std::uint32_t stream, const PacketPtr& packet) = 0;
-  /// The last word of a stream whose actor or scene is gone.
-  virtual void ended(std::uint32_t stream, const std::string& reason) = 0;
-};
-
-struct Subscription {
-  std::weak_ptr<PacketSink> sink;
-  std::uint32_t stream = 0;
-};
-using Subscriptions = std::vector<Subscription>;
-
 /// Makes the packets of one actor's vertices at one rate, for whoever has subscribed.
 ///
 /// Lives on the stage's strand; evaluates on workers, one evaluation at a time. While the actor moves, packets leave on an
@@ -50,7 +36,7 @@ class Producer : public std::enable_shared_from_this<Producer> {
   struct Environment {
     boost::asio::io_context& strand;
     WorkerPool& workers;
-    Post deliver;  ///< to the sinks' thread
+    Mailbox& mailbox;  ///< to the sinks' thread
     Metrics& metrics;
     std::function<void()> progressed;  ///< on the strand, after each delivery
   };
@@ -74,9 +60,9 @@ class Producer : public std::enable_shared_from_this<Producer> {
  private:
   void schedule();
   void tick(ClockUs at_us);
-  void evaluate(stage::ActorShow show, ClockUs at_us);
-  void finished(const PacketPtr& packet, std::uint64_t serial);
-  void deliver(const PacketPtr& packet, std::shared_ptr<const Subscriptions> to);
+  void evaluate(ClockUs at_us);
+  void evaluate_on_worker();
+  void finished();
   [[nodiscard]] stage::ActorShow show(ClockUs at_us) const noexcept;
 
   const StreamKey key_;
@@ -90,6 +76,10 @@ class Producer : public std::enable_shared_from_this<Producer> {
   stage::SceneViewPtr view_;
   std::size_t actor_ = 0;  ///< its index in the view
   PacketPtr latest_;
+  // The evaluation under way, handed to a worker and back. Members and not a closure: nothing is allocated for a packet.
+  boost::intrusive_ptr<Packet> making_;
+  stage::ActorShow making_show_;
+  std::shared_ptr<Producer> busy_self_;  ///< set while a worker is at it
   std::uint64_t evaluated_serial_ = 0;
   std::uint64_t delivered_serial_ = 0;
   std::uint64_t continuity_ = 0;
