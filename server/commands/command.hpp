@@ -27,7 +27,7 @@ enum class Role : std::uint8_t { View, Control, Admin };
 enum class Shape : std::uint8_t {
   Ping,         ///< network thread, at once
   Query,        ///< network thread: reads the published view
-  WorkerQuery,  ///< a worker: reads files or evaluates
+  WorkerQuery,  ///< a worker: reads files, evaluates, or answers at length
   Edit,         ///< planned on the stage's strand; pipelined
   HeavyEdit,    ///< planned on a worker first, to warm its scratch, then on the strand
   SceneEdit,    ///< creates or removes a scene, or moves in its history
@@ -103,7 +103,7 @@ struct Command {
   void (*scene_edit)(const void*, const Services&, stage::EditOptions, stage::EditDone) = nullptr;
   Result<std::vector<std::size_t>> (*players)(const void*, const stage::PlayersTurn&) = nullptr;
   std::string (*players_scene)(const void*) = nullptr;
-  void (*connection)(const void*, const std::shared_ptr<Conversation>&, ConnectionDone) = nullptr;
+  void (*connection)(const void*, const std::shared_ptr<Conversation>&, const ConnectionDone&) = nullptr;
 
   [[nodiscard]] bool is_edit() const noexcept {
     return shape == Shape::Edit || shape == Shape::HeavyEdit || shape == Shape::SceneEdit;
@@ -209,13 +209,13 @@ Command scene_command(std::string_view name, Role role, std::string_view summary
   return c;
 }
 
-/// `void handler(const P&, const std::shared_ptr<Conversation>&, ConnectionDone)`
-template <class R, class P, void (*Handler)(const P&, const std::shared_ptr<Conversation>&, ConnectionDone)>
+/// `void handler(const P&, const std::shared_ptr<Conversation>&, const ConnectionDone&)`
+template <class R, class P, void (*Handler)(const P&, const std::shared_ptr<Conversation>&, const ConnectionDone&)>
 Command connection_command(std::string_view name, std::string_view summary) {
   Command c = detail::row<P>(name, Role::View, Shape::Connection, summary);
   c.result = &protocol::type_of<R>();
-  c.connection = [](const void* p, const std::shared_ptr<Conversation>& conversation, ConnectionDone done) {
-    Handler(*static_cast<const P*>(p), conversation, std::move(done));
+  c.connection = [](const void* p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
+    Handler(*static_cast<const P*>(p), conversation, done);
   };
   return c;
 }

@@ -180,10 +180,11 @@ bool Conversation::may_start(const Item& item) const noexcept {
 void Conversation::start(const ItemKey& key) {
   Item& item = find_unit(key.unit)->items[key.item];
   started(item.command != nullptr && !item.refused && item.command->is_edit());
-  if (item.refused) return finish(key, *item.refused);
+  if (item.refused || item.command == nullptr) return finish(key, Result<std::string>(item.refused.value_or(Error{})));
   if (item.command->role > role_) {
-    return finish(key, fail(ErrorCode::Forbidden,
-                            fmt::format("expected the role {}, found {}", role_name(item.command->role), role_name(role_))));
+    return finish(
+        key, Result<std::string>(fail(ErrorCode::Forbidden, fmt::format("expected the role {}, found {}",
+                                                                        role_name(item.command->role), role_name(role_)))));
   }
   switch (item.command->shape) {
     case Shape::Ping:
@@ -214,12 +215,13 @@ void Conversation::start_query(const ItemKey& key, Item& item) {
 
 void Conversation::start_worker_query(const ItemKey& key, Item& item) {
   worker_busy_ = true;
-  services_.workers.post([self = shared_from_this(), key, command = item.command, params = item.params,
+  services_.workers.post([self = shared_from_this(), key, id = item.id, command = item.command, params = item.params,
                           view = services_.stage.view(), now_us = steady_now_us()] {
-    auto result = command->query(params.get(), QueryContext{self->services_, view, now_us});
-    self->to_network_([self, key, result = std::move(result)]() mutable {
+    // Printed here to the last brace: a large answer costs the network thread nothing but a pointer.
+    Answer answer = print(id, command->query(params.get(), QueryContext{self->services_, view, now_us}));
+    self->to_network_([self, key, answer = std::move(answer)]() mutable {
       self->worker_busy_ = false;
-      self->finish(key, std::move(result));
+      self->finish(key, std::move(answer));
     });
   });
 }
@@ -280,40 +282,44 @@ void Conversation::start_players(const ItemKey& key, Item& item) {
 
 void Conversation::start_connection(const ItemKey& key, Item& item) {
   if (!peer_->can_push()) {
-    return finish(key, fail(ErrorCode::InvalidRequest,
-                            fmt::format("expected {} on line JSON or a WebSocket, found it on a single HTTP request",
-                                        item.command->name)));
+    return finish(
+        key, Result<std::string>(fail(ErrorCode::InvalidRequest,
+                                      fmt::format("expected {} on line JSON or a WebSocket, found it on a single HTTP request",
+                                                  item.command->name))));
   }
   item.command->connection(item.params.get(), shared_from_this(), [self = shared_from_this(), key](ConnectionAnswer answer) {
-    self->finish(key, std::move(answer.result), std::move(answer.afterwards));
+    self->finish(key, answer.result, std::move(answer.afterwards));
   });
 }
 
 void Conversation::finish_later(const ItemKey& key, Result<std::string> result) {
-  to_network_([self = shared_from_this(), key, result = std::move(result)]() mutable { self->finish(key, std::move(result)); });
+  to_network_([self = shared_from_this(), key, result = std::move(result)] { self->finish(key, result); });
 }
 
-void Conversation::finish(const ItemKey& key, Result<std::string> result, Task afterwards) {
+Conversation::Answer Conversation::print(const std::string& id, const Result<std::string>& result) {
+  if (id.empty()) return {{}, !result};  // a notification is not answered
+  return {result ? protocol::answer_json(id, *result) : protocol::answer_json(id, result.error()), !result};
+}
+
+void Conversation::finish(const ItemKey& key, const Result<std::string>& result, Task afterwards) {
+  if (closed_ || find_unit(key.unit) == nullptr) return;
+  finish(key, print(find_unit(key.unit)->items[key.item].id, result), std::move(afterwards));
+}
+
+void Conversation::finish(const ItemKey& key, Answer answer, Task afterwards) {
   Unit* unit = find_unit(key.unit);
   if (closed_ || unit == nullptr) return;
   Item& item = unit->items[key.item];
   --outstanding_;
   if (item.command != nullptr && !item.refused && item.command->is_edit()) --outstanding_edits_;
+  if (answer.failed) add(services_.metrics.request_errors_total);
+  item.text = std::move(answer.text);
   item.afterwards = std::move(afterwards);
-  answer(item, *unit, std::move(result));
+  item.params.reset();
+  ++unit->answered;
   flush();
   advance();
   if (progress_) progress_();
-}
-
-void Conversation::answer(Item& item, Unit& unit, Result<std::string> result) {
-  if (!result) add(services_.metrics.request_errors_total);
-  if (!item.id.empty()) {  // a notification is not answered
-    item.text = result ? protocol::answer_json(item.id, *result) : protocol::answer_json(item.id, result.error());
-  }
-  item.answered = true;
-  item.params.reset();
-  ++unit.answered;
 }
 
 void Conversation::flush() {
@@ -325,7 +331,11 @@ void Conversation::flush() {
     for (Item& item : unit.items) {
       if (item.afterwards) afterwards.push_back(std::move(item.afterwards));
       if (item.text.empty()) continue;
-      if (unit.batch) text += text.empty() ? '[' : ',';
+      if (!unit.batch) {
+        text = std::move(item.text);
+        continue;
+      }
+      text += text.empty() ? '[' : ',';
       text += item.text;
     }
     if (unit.batch && !text.empty()) text += ']';

@@ -57,7 +57,6 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
     const Command* command = nullptr;
     Params params;
     std::optional<Error> refused;  ///< decided while decoding
-    bool answered = false;
     std::string text;
     Task afterwards;
   };
@@ -72,6 +71,12 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   struct ItemKey {
     std::uint64_t unit;
     std::size_t item;
+  };
+
+  /// An answer as it will leave; empty for a notification.
+  struct Answer {
+    std::string text;
+    bool failed = false;
   };
 
   [[nodiscard]] static std::vector<Item> decode_items(const protocol::Message& message);
@@ -89,8 +94,9 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void started(bool edit);
   /// From any thread.
   void finish_later(const ItemKey& key, Result<std::string> result);
-  void finish(const ItemKey& key, Result<std::string> result, Task afterwards = {});
-  void answer(Item& item, Unit& unit, Result<std::string> result);
+  void finish(const ItemKey& key, const Result<std::string>& result, Task afterwards = {});
+  void finish(const ItemKey& key, Answer answer, Task afterwards = {});
+  [[nodiscard]] static Answer print(const std::string& id, const Result<std::string>& result);
   void flush();
   [[nodiscard]] Unit* find_unit(std::uint64_t number) noexcept;
 

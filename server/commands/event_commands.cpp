@@ -10,7 +10,7 @@ struct EventsParams {
   static void describe(FieldList<EventsParams>& f) { add_scene_field(f); }
 };
 
-void subscribe(const EventsParams& p, const std::shared_ptr<Conversation>& conversation, ConnectionDone done) {
+void subscribe(const EventsParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   const std::string scene = scene_or_main(p.scene);
   const Services& services = conversation->services();
   if (!services.stage.view()->find(scene)) return done({no_such_scene(scene), {}});
@@ -18,7 +18,7 @@ void subscribe(const EventsParams& p, const std::shared_ptr<Conversation>& conve
   done({protocol::encode(EmptyResult{}), {}});
 }
 
-void unsubscribe(const EventsParams& p, const std::shared_ptr<Conversation>& conversation, ConnectionDone done) {
+void unsubscribe(const EventsParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   // A scene that is gone took its subscriptions along: nothing to refuse.
   conversation->services().events.unsubscribe(scene_or_main(p.scene), conversation->peer().get());
   done({protocol::encode(EmptyResult{}), {}});

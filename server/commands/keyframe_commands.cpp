@@ -322,7 +322,7 @@ void add_keyframe_commands(std::vector<Command>& t) {
                                              Shape::HeavyEdit));
   t.push_back(edit_command<&move_keyframe>("keyframe.move", Role::Control, "Move a keyframe in time."));
   t.push_back(edit_command<&remove_keyframe>("keyframe.remove", Role::Control, "Remove a keyframe."));
-  t.push_back(query_command<&list_keyframes>("keyframe.list", Role::View, "The keyframes of a clip."));
+  t.push_back(query_command<&list_keyframes>("keyframe.list", Role::View, "The keyframes of a clip.", Shape::WorkerQuery));
 }
 
 }  // namespace tweend::commands

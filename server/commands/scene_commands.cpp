@@ -248,7 +248,8 @@ void add_scene_commands(std::vector<Command>& t) {
   t.push_back(scene_command<SceneResult, OldSceneParams, &remove_scene>("scene.remove", Role::Admin,
                                                                         "Remove a scene and all in it; it can't be undone."));
   t.push_back(edit_command<&update_scene>("scene.update", Role::Control, "Change the background or the grid."));
-  t.push_back(query_command<&describe_scene>("scene.describe", Role::View, "All of a scene but its keyframes."));
+  t.push_back(
+      query_command<&describe_scene>("scene.describe", Role::View, "All of a scene but its keyframes.", Shape::WorkerQuery));
 }
 
 }  // namespace tweend::commands

@@ -17,15 +17,15 @@ namespace tweend::protocol {
 
 template <>
 struct EnumNames<commands::StreamKind> {
-  static constexpr std::array<std::string_view, 1> names{"vertices"};
+  static constexpr std::array<std::string_view, 1> kNames{"vertices"};
 };
 template <>
 struct EnumNames<commands::StreamEncoding> {
-  static constexpr std::array<std::string_view, 1> names{"f32"};
+  static constexpr std::array<std::string_view, 1> kNames{"f32"};
 };
 template <>
 struct EnumNames<commands::StreamDelivery> {
-  static constexpr std::array<std::string_view, 1> names{"latest"};
+  static constexpr std::array<std::string_view, 1> kNames{"latest"};
 };
 
 }  // namespace tweend::protocol
@@ -141,7 +141,7 @@ void unsubscribe_later(const std::shared_ptr<Conversation>& conversation, const 
       [&hub = services.hub, key, peer = conversation->peer(), stream] { hub.unsubscribe(key, peer.get(), stream); });
 }
 
-void open_stream(const OpenParams& p, const std::shared_ptr<Conversation>& conversation, ConnectionDone done) {
+void open_stream(const OpenParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   const Services& services = conversation->services();
   if (const std::size_t most = services.limits.streams_per_connection; conversation->streams().size() >= most) {
     return done(
@@ -158,7 +158,7 @@ void open_stream(const OpenParams& p, const std::shared_ptr<Conversation>& conve
   const std::uint32_t stream = conversation->next_stream();
   conversation->streams()[stream] = {scene, (*actor)->name, p.rate.value_or(kDefaultRate)};
   add(services.metrics.streams);
-  services.workers.post([conversation, stream, actor = *actor, clip, done = std::move(done)] {
+  services.workers.post([conversation, stream, actor = *actor, clip, done] {
     conversation->to_network()([conversation, stream, text = open_result(stream, *actor, *clip), done] {
       if (conversation->closed()) return;
       // The producer hears of the reader when the answer is on its way: the first packet then comes right after it.
@@ -174,7 +174,7 @@ Error no_such_stream(std::uint64_t stream) {
               "params.stream");
 }
 
-void update_stream(const UpdateParams& p, const std::shared_ptr<Conversation>& conversation, ConnectionDone done) {
+void update_stream(const UpdateParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   const auto stream = static_cast<std::uint32_t>(p.stream);
   const auto at = conversation->streams().find(stream);
   if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});
@@ -186,7 +186,7 @@ void update_stream(const UpdateParams& p, const std::shared_ptr<Conversation>& c
         }});
 }
 
-void close_stream(const CloseParams& p, const std::shared_ptr<Conversation>& conversation, ConnectionDone done) {
+void close_stream(const CloseParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   const auto stream = static_cast<std::uint32_t>(p.stream);
   const auto at = conversation->streams().find(stream);
   if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});

@@ -26,15 +26,15 @@ namespace tweend::protocol {
 
 template <>
 struct EnumNames<commands::WireClipType> {
-  static constexpr std::array<std::string_view, 1> names{"vertex"};
+  static constexpr std::array<std::string_view, 1> kNames{"vertex"};
 };
 template <>
 struct EnumNames<animation::Interpolation> {
-  static constexpr std::array<std::string_view, 3> names{"step", "linear", "catmull_rom"};
+  static constexpr std::array<std::string_view, 3> kNames{"step", "linear", "catmull_rom"};
 };
 template <>
 struct EnumNames<stage::Loop> {
-  static constexpr std::array<std::string_view, 3> names{"once", "repeat", "ping_pong"};
+  static constexpr std::array<std::string_view, 3> kNames{"once", "repeat", "ping_pong"};
 };
 
 }  // namespace tweend::protocol

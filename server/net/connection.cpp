@@ -21,7 +21,13 @@ void tune_socket(Tcp::socket& socket) {
   boost::system::error_code ignored;
   socket.set_option(Tcp::no_delay(true), ignored);
   socket.set_option(asio::socket_base::keep_alive(true), ignored);
-  ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentBytes, sizeof kUnsentBytes);
+  const auto set = [&socket](int option, int value) {
+    ::setsockopt(socket.native_handle(), IPPROTO_TCP, option, &value, sizeof value);
+  };
+  set(TCP_NOTSENT_LOWAT, kUnsentBytes);
+  set(TCP_KEEPIDLE, 30);  // a peer that has gone without a word is noticed within a minute
+  set(TCP_KEEPINTVL, 10);
+  set(TCP_KEEPCNT, 3);
 }
 
 Connection::Connection(Tcp::socket socket, Framing framing, Metrics& metrics)

@@ -62,6 +62,10 @@ asio::awaitable<boost::system::error_code> read_request(beast::tcp_stream& strea
   if (parser.content_length() && *parser.content_length() > body_limit(parser.get().target(), limits)) {
     co_return http::make_error_code(http::error::body_limit);
   }
+  if (beast::iequals(parser.get()[http::field::expect], "100-continue")) {
+    const http::response<http::empty_body> go_on(http::status::continue_, 11);
+    co_await http::async_write(stream, go_on, kAwait);  // if this fails, so does the read
+  }
   const auto [error, bytes] = co_await http::async_read(stream, buffer, parser, kAwait);
   add(metrics.bytes_received_total, static_cast<std::int64_t>(bytes));
   if (!error) request = parser.release();
