@@ -31,6 +31,9 @@ function(tweend_layer name)
   target_link_libraries(tweend_${name} PUBLIC ${arg_SYSTEM})
 endfunction()
 
+# What the tsan run builds: the tests with the label `concurrent`, and the programs that end-to-end tests start.
+add_custom_target(concurrent_tests)
+
 # tweend_test(NAME SOURCES ... LIBS ... [CONCURRENT])
 # One GoogleTest program; CONCURRENT ones carry the CTest label that the tsan run selects.
 function(tweend_test name)
@@ -40,6 +43,7 @@ function(tweend_test name)
   set(labels "")
   if(arg_CONCURRENT)
     set(labels LABELS concurrent)
+    add_dependencies(concurrent_tests test_${name})
   endif()
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300 ${labels})
 endfunction()
