@@ -113,7 +113,7 @@ concept Described = requires(FieldList<T>& list) {
   T::describe(list);
 };
 
-/// Specialise for each enum: `static constexpr std::array names`, enumerators counting from 0.
+/// Specialise for each enum: `static constexpr std::array kNames`, enumerators counting from 0.
 template <class T>
 struct EnumNames;
 
@@ -196,7 +196,7 @@ struct Maker {
     TypeInfo info;
     if constexpr (std::is_enum_v<T>) {
       info.kind = Kind::Enum;
-      info.enumerators.assign(EnumNames<T>::names.begin(), EnumNames<T>::names.end());
+      info.enumerators.assign(EnumNames<T>::kNames.begin(), EnumNames<T>::kNames.end());
       info.set_enum = [](void* v, std::size_t i) { *static_cast<T*>(v) = static_cast<T>(i); };
       info.get_enum = [](const void* v) { return static_cast<std::size_t>(*static_cast<const T*>(v)); };
     } else if constexpr (Described<T>) {

@@ -13,6 +13,17 @@ namespace {
 /// Answers kept for repeated retry keys, a scene; the oldest are forgotten.
 constexpr std::size_t kRetryAnswers = 4'096;
 
+/// Players whose clip an edit has taken away.
+std::vector<std::size_t> players_off_their_clip(const SceneViewPtr& before, const SceneView& after) {
+  std::vector<std::size_t> moved;
+  for (std::size_t i = 0; before && i < after.players->size(); ++i) {
+    const Player& player = (*after.players)[i];
+    const Player* was = before->find_player(player.actor);
+    if (was != nullptr && was->clip != player.clip) moved.push_back(i);
+  }
+  return moved;
+}
+
 Error no_such_scene(const std::string& scene) {
   return fail(ErrorCode::NotFound, fmt::format("expected the name of a scene, found \"{}\"; scene.list names them", scene),
               "params.scene");
@@ -209,8 +220,13 @@ void Stage::group_succeeded(std::vector<Pending> entries) {
       continue;
     }
     document.durable = *after;
-    const auto players = players_for(*after->scene, document.published, now_us);
-    publish(name, std::make_shared<const SceneView>(SceneView{after->scene, players, next_serial_++}));
+    const SceneViewPtr before = document.published;
+    const auto players = players_for(*after->scene, before, now_us);
+    const auto view = std::make_shared<const SceneView>(SceneView{after->scene, players, next_serial_++});
+    publish(name, view);
+    if (const auto moved = players_off_their_clip(before, *view); !moved.empty()) {
+      listener_->players_changed(view, moved, now_us);
+    }
   }
   arm_end_timer();
   for (Pending& p : entries) {
