@@ -1,0 +1,140 @@
+#include "server/store/commit_queue.hpp"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/controlled_store.hpp"
+
+namespace tweend::store {
+namespace {
+
+/// Collects what a queue reports.
+class Reports {
+ public:
+  CommitQueue::Report taker() {
+    return [this](CommitQueue::Group group) {
+      const std::lock_guard lock(mutex_);
+      for (const std::uint64_t ticket : group.tickets) (group.status ? done_ : failed_).push_back(ticket);
+      ++groups_;
+      changed_.notify_all();
+    };
+  }
+  void wait_for_tickets(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return done_.size() + failed_.size() >= count; });
+  }
+  std::vector<std::uint64_t> done() {
+    const std::lock_guard lock(mutex_);
+    return done_;
+  }
+  std::vector<std::uint64_t> failed() {
+    const std::lock_guard lock(mutex_);
+    return failed_;
+  }
+  std::size_t groups() {
+    const std::lock_guard lock(mutex_);
+    return groups_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::uint64_t> done_, failed_;
+  std::size_t groups_ = 0;
+};
+
+Commit commit(std::uint64_t ticket) { return {"main", nullptr, std::to_string(ticket), "", ""}; }
+
+TEST(CommitQueue, WhatWaitsTogetherIsOneCommitInOrder) {
+  test::ControlledStore disk;
+  Reports reports;
+  disk.hold();
+  CommitQueue queue(disk, reports.taker());
+  queue.push(1, 1, commit(1));
+  disk.wait_for_commits(1);  // the writer is at the first one: all others wait
+  for (std::uint64_t t = 2; t <= 50; ++t) queue.push(t, 1, commit(t));
+  disk.release();
+  reports.wait_for_tickets(50);
+  std::vector<std::uint64_t> all;
+  for (std::uint64_t t = 1; t <= 50; ++t) all.push_back(t);
+  EXPECT_EQ(reports.done(), all);
+  EXPECT_EQ(reports.groups(), 2U);
+  ASSERT_EQ(disk.groups().size(), 2U);
+  EXPECT_EQ(disk.groups()[1].size(), 49U);
+  EXPECT_EQ(disk.groups()[1].front().method, "2");
+}
+
+TEST(CommitQueue, AFailurePoisonsItsEpochAndNoLaterOne) {
+  test::ControlledStore disk;
+  Reports reports;
+  disk.hold();
+  disk.fail_next(1);
+  CommitQueue queue(disk, reports.taker());
+  queue.push(1, 1, commit(1));
+  disk.wait_for_commits(1);
+  queue.push(2, 1, commit(2));  // built on an edit that is about to be lost
+  disk.release();
+  reports.wait_for_tickets(2);
+  EXPECT_EQ(reports.failed(), (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(disk.groups().size(), 1U) << "the second was never written";
+
+  queue.push(3, 1, commit(3));  // still of the lost epoch
+  queue.push(4, 2, commit(4));
+  reports.wait_for_tickets(4);
+  EXPECT_EQ(reports.failed(), (std::vector<std::uint64_t>{1, 2, 3}));
+  EXPECT_EQ(reports.done(), (std::vector<std::uint64_t>{4}));
+}
+
+TEST(CommitQueue, StoppingCommitsWhatWaits) {
+  test::ControlledStore disk;
+  Reports reports;
+  {
+    CommitQueue queue(disk, reports.taker());
+    for (std::uint64_t t = 1; t <= 100; ++t) queue.push(t, 1, commit(t));
+    queue.stop();
+    EXPECT_EQ(reports.done().size(), 100U);
+  }
+}
+
+TEST(CommitQueue, ManyThreadsMayPush) {
+  test::ControlledStore disk;
+  Reports reports;
+  CommitQueue queue(disk, reports.taker());
+  std::vector<std::thread> threads;
+  for (std::uint64_t base = 0; base < 4; ++base) {
+    threads.emplace_back([&queue, base] {
+      for (std::uint64_t i = 1; i <= 250; ++i) queue.push(base * 250 + i, 1, commit(i));
+    });
+  }
+  for (std::thread& t : threads) t.join();
+  reports.wait_for_tickets(1000);
+  const auto done = reports.done();
+  EXPECT_EQ(std::set<std::uint64_t>(done.begin(), done.end()).size(), 1000U);
+}
+
+// Wherever the disk fails, what was reported done is on it, and nothing else.
+TEST(CommitQueue, WhatIsReportedDoneIsWrittenWhereverTheDiskFails) {
+  for (std::size_t failing = 0; failing < 6; ++failing) {
+    test::ControlledStore disk;
+    Reports reports;
+    CommitQueue queue(disk, reports.taker());
+    std::uint64_t epoch = 1;
+    for (std::uint64_t t = 1; t <= 6; ++t) {
+      if (t == failing + 1) disk.fail_next(1);
+      queue.push(t, epoch, commit(t));
+      reports.wait_for_tickets(t);
+      if (!reports.failed().empty()) epoch = 2;
+    }
+    EXPECT_EQ(reports.failed(), (std::vector<std::uint64_t>{failing + 1}));
+    EXPECT_EQ(reports.done().size(), 5U);
+  }
+}
+
+}  // namespace
+}  // namespace tweend::store
