@@ -39,7 +39,8 @@ std::variant<Request, Rejected> parse_request(const JsonValue& whole, const json
   Request request{id_text, method->get<std::string>(), {}};
   if (const auto params = j.find("params"); params != j.end()) {
     if (params->is_array()) {
-      return rejected(answer_id, ErrorCode::InvalidParams,
+      // A valid request to JSON-RPC, so that as a notification it is not answered.
+      return rejected(id_text, ErrorCode::InvalidParams,
                       "expected params to be an object with named parameters, found an array", "params");
     }
     if (!params->is_object()) {

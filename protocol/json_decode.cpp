@@ -36,7 +36,7 @@ Status number_into(const json& j, T& out, const Range& range, const std::string&
   if (!j.is_number()) return wrong(path, expected(), j);
   const double v = j.get<double>();
   const T narrow = static_cast<T>(v);
-  if (!std::isfinite(narrow) || !inside(v, range)) return wrong(path, expected(), j);
+  if (!std::isfinite(narrow) || !inside(static_cast<double>(narrow), range)) return wrong(path, expected(), j);
   out = narrow;
   return {};
 }
@@ -91,10 +91,14 @@ Status indices_into(const json& j, std::vector<std::uint32_t>& out, const std::s
   if (!j.is_array()) return wrong(path, "an array of indices", j);
   out.resize(j.size());
   for (std::size_t i = 0; i < j.size(); ++i) {
-    if (!j[i].is_number_unsigned() || j[i].get<std::uint64_t>() > UINT32_MAX) {
-      return wrong(fmt::format("{}[{}]", path, i), "an index, a whole number from 0", j[i]);
+    std::uint64_t index = 0;
+    if (j[i].is_number_unsigned()) {
+      index = j[i].get<std::uint64_t>();  // nearly always: no path is printed for it
+    } else if (!integer_into(j[i], index, {}, path)) {
+      index = UINT64_MAX;
     }
-    out[i] = j[i].get<std::uint32_t>();
+    if (index > UINT32_MAX) return wrong(fmt::format("{}[{}]", path, i), "an index, a whole number from 0", j[i]);
+    out[i] = static_cast<std::uint32_t>(index);
   }
   return {};
 }

@@ -48,7 +48,7 @@ ordered_json schema_of(const TypeInfo& type, const Range& range) {
     case Kind::Integer:
       return number("integer", range);
     case Kind::Unsigned:
-      return number("integer", range.min > 0 ? range : Range{0.0, range.max, false});
+      return number("integer", range.min >= 0.0 ? range : Range{0.0, range.max, false});
     case Kind::Number:
     case Kind::Float:
       return number("number", range);

@@ -6,26 +6,36 @@
 namespace tweend::stage {
 namespace {
 
-// Like std::fmod, but in [0, length) also for negative x.
-double wrapped(double x, double length) noexcept {
-  const double m = std::fmod(x, length);
-  const double positive = m < 0.0 ? m + length : m;
-  return positive < length ? positive : 0.0;  // rounding may land on the length itself
+/// A phase as whole lengths and a rest in [0, length).
+struct Laps {
+  double whole;
+  double rest;
+};
+
+Laps laps_of(double phase, double length) noexcept {
+  constexpr double kUncounted = 1e15;  // so far out, neither laps nor places on them can be told apart
+  if (!(std::abs(phase) < kUncounted * length)) return {0.0, 0.0};
+  double rest = std::fmod(phase, length);  // exact
+  if (rest < 0.0) rest += length;
+  const double whole = std::round((phase - rest) / length);
+  // Just before a seam, rounding lands on it.
+  return rest < length ? Laps{whole, rest} : Laps{whole + 1.0, 0.0};
 }
 
 double clamped_or_wrapped(const PlayRange& r, Loop loop, double time_s) noexcept {
   if (time_s >= r.in_s && time_s <= r.out_s) return time_s;
   if (loop == Loop::Once || r.length_s() <= 0.0) return std::clamp(time_s, r.in_s, r.out_s);
-  return r.in_s + wrapped(time_s - r.in_s, r.length_s());
+  return std::min(r.in_s + laps_of(time_s - r.in_s, r.length_s()).rest, r.out_s);
 }
 
 }  // namespace
 
 PlayRange Player::range_of(const model::Clip& c) const noexcept {
-  const PlayRange whole{0.0, c.duration_s()};
+  const PlayRange whole{0.0, c.duration_s(), c.settings.closed};
   if (!range) return whole;
   const PlayRange cut{range->in_s, std::min(range->out_s, whole.out_s)};
-  return cut.in_s < cut.out_s ? cut : whole;
+  if (!(cut.in_s < cut.out_s)) return whole;
+  return cut.in_s == 0.0 && cut.out_s == whole.out_s ? whole : cut;
 }
 
 PlayerReading Player::read(const PlayRange& r, ClockUs now_us) const noexcept {
@@ -37,26 +47,28 @@ PlayerReading Player::read(const PlayRange& r, ClockUs now_us) const noexcept {
   reading.backwards = speed < 0.0;
   reading.wraps = anchor_wraps;
   reading.played_s = anchor_played_s + ran_s;
-  const bool still = !playing || length <= 0.0;
+  const bool still = !playing || length <= 0.0 || speed == 0.0 || ran_s == 0.0;
+  double forwards = std::clamp(phase, 0.0, std::max(length, 0.0));  // where time stands still, and of a `once`
   if (loop == Loop::Once) {
-    reading.time_s = r.in_s + std::clamp(phase, 0.0, std::max(length, 0.0));
     const auto end = end_us(r);
     reading.ended = end && now_us >= *end;
     if (reading.ended) {
       reading.playing = false;
-      reading.time_s = speed < 0.0 ? r.in_s : r.out_s;  // exactly, whatever the clock's last microsecond
+      forwards = speed < 0.0 ? 0.0 : length;  // exactly, whatever the clock's last microsecond
       reading.played_s = anchor_played_s + seconds_between(anchor_us, *end);
     }
   } else if (loop == Loop::PingPong) {
-    const double folded = still ? phase : wrapped(phase, 2.0 * length);
+    const double folded = still ? phase : laps_of(phase, 2.0 * length).rest;
     const bool returning = folded > length;
-    reading.time_s = r.in_s + std::clamp(returning ? 2.0 * length - folded : folded, 0.0, std::max(length, 0.0));
+    forwards = std::clamp(returning ? 2.0 * length - folded : folded, 0.0, std::max(length, 0.0));
     reading.backwards = returning != (speed < 0.0);
-  } else {
+  } else if (!still) {
     // A held time may be `out`; a running one is there for no time at all.
-    reading.time_s = r.in_s + (still || ran_s == 0.0 ? std::clamp(phase, 0.0, std::max(length, 0.0)) : wrapped(phase, length));
-    if (!still) reading.wraps += static_cast<std::int64_t>(std::floor(phase / length));
+    const Laps laps = laps_of(phase, length);
+    forwards = laps.rest;
+    if (!r.seamless) reading.wraps += static_cast<std::int64_t>(laps.whole);
   }
+  reading.time_s = forwards == length ? r.out_s : std::min(r.in_s + forwards, r.out_s);
   return reading;
 }
 
@@ -161,7 +173,9 @@ std::optional<double> step_keyframes(std::span<const double> times_s, const Play
   const auto count = static_cast<std::int64_t>(end - begin);
   if (count == 0) return std::nullopt;
   if (n == 0) return time_s;
-  const auto here = n > 0 ? std::upper_bound(begin, end, time_s) : std::lower_bound(begin, end, time_s);
+  // A playhead on a keyframe may be a rounding away from it; no two keyframes are as near as that.
+  constexpr double kOnIt = model::kSameTimeSeconds / 2.0;
+  const auto here = n > 0 ? std::upper_bound(begin, end, time_s + kOnIt) : std::lower_bound(begin, end, time_s - kOnIt);
   // The first key after the playhead is step 1, the last one before it step -1.
   const std::int64_t target = (here - begin) + (n > 0 ? n - 1 : n);
   const std::int64_t index =

@@ -18,6 +18,7 @@ enum class Loop : std::uint8_t { Once, Repeat, PingPong };
 struct PlayRange {
   double in_s = 0.0;
   double out_s = 0.0;
+  bool seamless = false;  ///< the whole of a closed clip: a `repeat` runs through its seam without a jump
   [[nodiscard]] double length_s() const noexcept { return out_s - in_s; }
   bool operator==(const PlayRange&) const = default;
 };
@@ -48,6 +49,8 @@ struct Player {
   double anchor_played_s = 0.0;
   std::int64_t anchor_wraps = 0;
   std::uint64_t jumps = 0;  ///< seeks, stops, clip changes: breaks in what is shown
+
+  bool operator==(const Player&) const = default;
 
   /// The range in force for a clip: the one that was set, cut to what the clip has; the whole clip where nothing is left.
   [[nodiscard]] PlayRange range_of(const model::Clip& c) const noexcept;

@@ -25,9 +25,7 @@ ActorShow show_actor(const model::ActorPtr& actor, const Player& player, ClockUs
   const PlayerReading reading = player.read(range, at_us);
   ActorShow show{actor, clip, reading.time_s, actor->settings.spin_rad_s * reading.played_s, false, player.jumps << 32U};
   show.moving = reading.playing && range.length_s() > 0.0 && player.speed != 0.0;
-  // A closed clip played whole runs through its seam without a jump.
-  const bool seamless = clip->settings.closed && range.length_s() == clip->duration_s();
-  if (!seamless) show.continuity += static_cast<std::uint64_t>(reading.wraps);
+  show.continuity += static_cast<std::uint64_t>(reading.wraps);
   return show;
 }
 

@@ -118,7 +118,8 @@ void Stage::create_scene(EditOptions options, std::function<std::string(std::uin
       return done(
           fail(ErrorCode::Conflict, fmt::format("expected a new name, found the scene \"{}\"", options.scene), "params.scene"));
     }
-    if (documents_.size() >= limits_.scenes) {
+    const auto scenes = std::count_if(documents_.begin(), documents_.end(), [](const auto& d) { return !d.second.removed; });
+    if (static_cast<std::size_t>(scenes) >= limits_.scenes) {
       return done(
           fail(ErrorCode::Limit, fmt::format("expected at most {} scenes, found as many; remove one first", limits_.scenes)));
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace tweend::streams {
@@ -74,10 +75,16 @@ void Hub::after_delivery(const stage::SceneViewPtr& view, std::function<void()> 
 }
 
 void Hub::progressed() {
-  // In order: what ended first is told first.
-  while (!waiters_.empty() && delivered(waiters_.front())) {
-    const auto then = std::move(waiters_.front().then);
-    waiters_.erase(waiters_.begin());
+  // In order within a scene: what ended first is told first. Another scene's producers hold nobody up.
+  std::set<std::string> blocked;
+  for (auto at = waiters_.begin(); at != waiters_.end();) {
+    if (blocked.contains(at->scene) || !delivered(*at)) {
+      blocked.insert(at->scene);
+      ++at;
+      continue;
+    }
+    const auto then = std::move(at->then);
+    at = waiters_.erase(at);
     then();
   }
 }

@@ -30,10 +30,20 @@ bool Producer::follow(stage::SceneViewPtr view) {
       std::find_if(actors.begin(), actors.end(), [this](const model::ActorPtr& a) { return a->name == key_.actor; });
   if (at == actors.end()) return false;
   if (view_ && view_->scene->actors[actor_]->mesh != (*at)->mesh) return false;
-  actor_ = static_cast<std::size_t>(at - actors.begin());
+  const auto actor = static_cast<std::size_t>(at - actors.begin());
+  if (view_ && evaluated_serial_ == view_->serial && shows_the_same(*view, actor)) {
+    // Another actor's player: what has been sent of this one is as good for the new view.
+    evaluated_serial_ = view->serial;
+    if (!evaluating_) delivered_serial_ = view->serial;
+  }
+  actor_ = actor;
   view_ = std::move(view);
   if (!idle()) schedule();
   return true;
+}
+
+bool Producer::shows_the_same(const stage::SceneView& next, std::size_t actor) const noexcept {
+  return next.scene->revision == view_->scene->revision && (*next.players)[actor] == (*view_->players)[actor_];
 }
 
 stage::ActorShow Producer::show(ClockUs at_us) const noexcept {
@@ -44,8 +54,7 @@ void Producer::add(Subscription subscription) {
   auto next = std::make_shared<Subscriptions>(*subscriptions_);
   next->push_back(subscription);
   subscriptions_ = std::move(next);
-  // The latest packet is as good as new, unless this producer slept through a change before anybody came back.
-  if (latest_ && (evaluating_ || evaluated_serial_ == view_->serial)) {
+  if (latest_) {  // whatever has changed since is on its way to all
     environment_.mailbox.put({latest_, std::make_shared<const Subscriptions>(Subscriptions{std::move(subscription)})});
   }
   schedule();
@@ -79,11 +88,16 @@ void Producer::schedule() {
   const bool changed = evaluated_serial_ != view_->serial;
   if (!changed && settled_) return;
   const ClockUs now_us = steady_now_us();
-  const double period_us = 1e6 / key_.rate;
-  // The next reading of the grid, one that has not been used; a change after a pause needs no grid to wait for.
-  auto k = static_cast<std::int64_t>(std::floor(static_cast<double>(now_us - start_us_) / period_us)) + 1;
-  ClockUs at_us = start_us_ + static_cast<ClockUs>(static_cast<double>(k) * period_us);
-  if (changed && static_cast<double>(now_us - last_at_us_) >= period_us) at_us = now_us;
+  constexpr double kLongestUs = 1e15;  // decades: what the clock can still count
+  const double period_us = std::min(1e6 / key_.rate, kLongestUs);
+  // The next reading of the grid; a change after a pause, and the very first packet, need no grid to wait for.
+  const auto reading = static_cast<std::int64_t>(std::floor(static_cast<double>(now_us - start_us_) / period_us)) + 1;
+  const bool at_once = changed && (sequence_ == 0 || static_cast<double>(now_us - last_at_us_) >= period_us);
+  const ClockUs at_us = at_once ? now_us : start_us_ + static_cast<ClockUs>(static_cast<double>(reading) * period_us);
+  if (sequence_ != 0 && !settled_) {
+    tweend::add(environment_.metrics.ticks_missed_total, std::max<std::int64_t>(0, reading - last_reading_ - 1));
+  }
+  last_reading_ = at_once ? reading - 1 : reading;
   scheduled_ = true;
   timer_.expires_at(instant(at_us));
   timer_.async_wait([self = shared_from_this(), at_us](const boost::system::error_code& error) {
@@ -94,12 +108,9 @@ void Producer::schedule() {
 
 void Producer::tick(ClockUs at_us) {
   const ClockUs now_us = steady_now_us();
-  const auto period_us = static_cast<ClockUs>(1e6 / key_.rate);
-  if (now_us - at_us >= period_us) {  // the machine was away: show now, not then
-    tweend::add(environment_.metrics.ticks_missed_total, (now_us - at_us) / period_us);
-    at_us = now_us;
-  }
-  evaluate(at_us);
+  // The machine was away: show now, not then. And never a playhead at a reading before it was set.
+  if (static_cast<double>(now_us - at_us) >= 1e6 / key_.rate) at_us = now_us;
+  evaluate(std::max(at_us, (*view_->players)[actor_].anchor_us));
 }
 
 void Producer::evaluate(ClockUs at_us) {

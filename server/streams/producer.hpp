@@ -58,6 +58,7 @@ class Producer : public std::enable_shared_from_this<Producer> {
   void stop();
 
  private:
+  [[nodiscard]] bool shows_the_same(const stage::SceneView& next, std::size_t actor) const noexcept;
   void schedule();
   void tick(ClockUs at_us);
   void evaluate(ClockUs at_us);
@@ -86,7 +87,8 @@ class Producer : public std::enable_shared_from_this<Producer> {
   std::uint64_t revision_ = 0;
   std::uint32_t sequence_ = 0;
   ClockUs last_at_us_ = 0;
-  bool settled_ = false;  ///< the last packet evaluated was the last of its cause
+  std::int64_t last_reading_ = 0;  ///< of the grid, by number
+  bool settled_ = false;           ///< the last packet evaluated was the last of its cause
   bool evaluating_ = false;
   bool scheduled_ = false;
 };

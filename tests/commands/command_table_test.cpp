@@ -3,6 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -105,6 +109,99 @@ TEST(CommandTable, TheOpenRpcDocumentNamesEveryMethodWithItsRole) {
     EXPECT_NE(document.find("\"name\":\"" + std::string(c.name) + "\""), std::string::npos) << c.name;
   }
   EXPECT_NE(document.find("\"x-role\":\"admin\""), std::string::npos);
+}
+
+TEST(CommandTable, RetryKeysAreMeasuredInCharactersNotBytes) {
+  std::string key;
+  for (int i = 0; i < 64; ++i) key += "\u00e9";  // two bytes each
+  const auto json = protocol::JsonValue::parse("{\"retry_key\":\"" + key + "\"}", Limits{});
+  EXPECT_TRUE(decode_params(*find_command("edit.undo"), *json));
+  const auto longer = protocol::JsonValue::parse("{\"retry_key\":\"" + key + "x\"}", Limits{});
+  EXPECT_FALSE(decode_params(*find_command("edit.undo"), *longer));
+}
+
+using Json = nlohmann::json;
+
+/// Every property at any depth: its path and its schema.
+void each_property(const Json& schema, const std::string& path,
+                   const std::function<void(const std::string&, const Json&)>& look) {
+  for (const char* inside : {"items"}) {
+    if (schema.contains(inside)) each_property(schema[inside], path, look);
+  }
+  if (schema.contains("anyOf")) {
+    for (const Json& choice : schema["anyOf"]) each_property(choice, path, look);
+  }
+  if (!schema.contains("properties")) return;
+  for (const auto& [name, property] : schema["properties"].items()) {
+    look(path + "." + name, property);
+    each_property(property, path + "." + name, look);
+  }
+}
+
+TEST(CommandTable, EveryParamsSchemaIsValidAndExplainsAllOfItsProperties) {
+  for (const Command& c : command_table()) {
+    for (const protocol::TypeInfo* type : {c.params, c.result}) {
+      const Json schema = Json::parse(protocol::json_schema(*type), nullptr, false);
+      ASSERT_TRUE(schema.is_object()) << c.name;
+      if (type == c.params) {
+        EXPECT_EQ(schema["type"], "object") << c.name;
+        EXPECT_EQ(schema["additionalProperties"], false) << c.name;
+      }
+      each_property(schema, std::string(c.name), [](const std::string& path, const Json& property) {
+        EXPECT_TRUE(property.contains("description") && !property["description"].get<std::string>().empty()) << path;
+      });
+    }
+  }
+}
+
+TEST(CommandTable, EveryParameterStandsOnTheProtocolPage) {
+  const std::string page = protocol_page();
+  for (const Command& c : command_table()) {
+    each_property(Json::parse(protocol::json_schema(*c.params)), std::string(c.name),
+                  [&](const std::string& path, const Json&) {
+                    const std::string name = path.substr(path.rfind('.') + 1);
+                    EXPECT_TRUE(std::regex_search(page, std::regex("\\b" + name + "\\b"))) << path;
+                  });
+  }
+}
+
+TEST(CommandTable, EachRoleIsThatOfSectionEight) {
+  const std::map<std::string_view, Role> exceptions{{"scene.create", Role::Admin}, {"scene.remove", Role::Admin},
+                                                    {"asset.export", Role::Admin}, {"store.backup", Role::Admin},
+                                                    {"record.start", Role::Admin}, {"record.stop", Role::Admin}};
+  const std::set<std::string_view> view_families{"server", "rpc", "stream", "events"};
+  const std::set<std::string_view> view_verbs{"list", "describe", "get", "sample", "render"};
+  for (const Command& c : command_table()) {
+    const std::string_view family = c.name.substr(0, c.name.find('.')), verb = c.name.substr(c.name.find('.') + 1);
+    const auto exception = exceptions.find(c.name);
+    const Role expected = exception != exceptions.end()                                 ? exception->second
+                          : view_families.contains(family) || view_verbs.contains(verb) ? Role::View
+                                                                                        : Role::Control;
+    EXPECT_EQ(role_name(c.role), role_name(expected)) << c.name;
+  }
+}
+
+TEST(CommandTable, TheOpenRpcDocumentIsTheTable) {
+  const Json document = Json::parse(*openrpc_document());
+  ASSERT_EQ(document["methods"].size(), command_table().size());
+  for (std::size_t i = 0; i < command_table().size(); ++i) {
+    const Command& c = command_table()[i];
+    const Json& method = document["methods"][i];
+    EXPECT_EQ(method["name"], c.name);
+    EXPECT_EQ(method["x-role"], role_name(c.role));
+    EXPECT_EQ(method["summary"], c.summary);
+    EXPECT_EQ(method["params"].size(), c.params->fields.size());
+  }
+}
+
+TEST(CommandTable, PositiveFloatsStayPositive) {
+  // 1e-50 is no 0 to JSON, but would be one as a float: a camera without a near plane.
+  for (const char* name : {"near", "far"}) {
+    const auto json = protocol::JsonValue::parse(std::string("{\"") + name + "\":1e-50}", Limits{});
+    const auto decoded = decode_params(*find_command("camera.set"), *json);
+    ASSERT_FALSE(decoded) << name;
+    EXPECT_EQ(decoded.error().path, std::string("params.") + name);
+  }
 }
 
 }  // namespace

@@ -22,9 +22,7 @@ struct Point {
 
 MeshPtr triangle() { return *Mesh::make(3, {0, 1, 2}); }
 VertexKeyPtr key(const std::vector<float>& positions) { return *VertexKey::make(*triangle(), positions); }
-VertexKeyPtr key_at(float x, float y, float z, float size = 0.01F) {
-  return key({x, y, z, x + size, y, z, x, y + size, z});
-}
+VertexKeyPtr key_at(float x, float y, float z, float size = 0.01F) { return key({x, y, z, x + size, y, z, x, y + size, z}); }
 
 ClipPtr clip_of(std::string name, std::vector<double> times_s, const std::vector<VertexKeyPtr>& keys,
                 std::optional<Interpolation> mode = {}, std::optional<animation::CubicBezier> easing = {}) {
@@ -104,9 +102,8 @@ TEST(BoundingSphere, IsNoLargerThanTheBoxThatItHolds) {
 }
 
 TEST(BoundingSphere, HoldsEveryKeyframeOfEveryClip) {
-  expect_held(scene_of({actor_of(key_at(0, 0, 0),
-                                 {clip_of("near", {0, 1}, {key_at(0, 0, 0), key_at(1, 0, 0)}),
-                                  clip_of("far", {0, 1}, {key_at(0, 50, 0), key_at(0, 0, -70)})})}));
+  expect_held(scene_of({actor_of(key_at(0, 0, 0), {clip_of("near", {0, 1}, {key_at(0, 0, 0), key_at(1, 0, 0)}),
+                                                   clip_of("far", {0, 1}, {key_at(0, 50, 0), key_at(0, 0, -70)})})}));
 }
 
 TEST(BoundingSphere, HoldsTheRestShapeWhereAClipIsEmpty) {
@@ -167,7 +164,8 @@ TEST(BoundingSphere, HoldsALongSpinningActorBesideAnother) {
   beside.transform.translation = {0.0F, 0.0F, -60.0F};
   const VertexKeyPtr shape = key({-1, 0, 0, 1, 0, 0, 0, 0.01F, 0.01F});
   const VertexKeyPtr small = key_at(0, 0, 0);
-  expect_held(scene_of({actor_of(shape, {clip_of("c", {0}, {shape})}, rod), actor_of(small, {clip_of("c", {0}, {small})}, beside)}));
+  expect_held(
+      scene_of({actor_of(shape, {clip_of("c", {0}, {shape})}, rod), actor_of(small, {clip_of("c", {0}, {small})}, beside)}));
 }
 
 TEST(BoundingSphere, LeavesOutWhatIsInvisibleBesideWhatIsNot) {
@@ -203,7 +201,8 @@ TEST(Fit, ShowsAllEightCornersOfABoxFromAnySide) {
       return Point{p.x / length, p.y / length, p.z / length};
     };
     const auto between = [](const glm::vec3& from, const glm::vec3& to) {
-      return Point{static_cast<double>(to.x) - static_cast<double>(from.x), static_cast<double>(to.y) - static_cast<double>(from.y),
+      return Point{static_cast<double>(to.x) - static_cast<double>(from.x),
+                   static_cast<double>(to.y) - static_cast<double>(from.y),
                    static_cast<double>(to.z) - static_cast<double>(from.z)};
     };
     const auto dot = [](Point a, Point b) { return a.x * b.x + a.y * b.y + a.z * b.z; };

@@ -204,5 +204,142 @@ TEST_F(OutboxTest, RawBytesLeaveAsTheyAre) {
   EXPECT_EQ(drain(web), std::string("\x8a\x00", 2));
 }
 
+/// Header and payload of make_packet(), written out by hand from section 6's table.
+std::string packet_bytes(std::uint32_t stream, std::uint32_t sequence) {
+  const auto u32 = [](std::uint32_t v) {
+    std::string text;
+    for (unsigned shift = 0; shift < 32; shift += 8) text += static_cast<char>(static_cast<unsigned char>(v >> shift));
+    return text;
+  };
+  std::string all("TWND\x01\x02\x00\x01", 8);
+  all += u32(stream) + u32(sequence) + std::string(20, '\0') + u32(24);
+  for (const std::uint32_t bits : {0x00000000U, 0x3F800000U, 0x40000000U, 0x40400000U, 0x40800000U, 0x40A00000U}) {
+    all += u32(bits);  // 0 to 5 as float32
+  }
+  return all;
+}
+
+TEST_F(OutboxTest, PacketsAreTheSameBytesInBothFramings) {
+  const PacketPtr packet = make_packet(0x01020304);
+  line.offer(4000000000U, packet);
+  std::string expected = R"({"jsonrpc":"2.0","method":"stream.packet","params":{"stream":4000000000,"bytes":64}})";
+  expected += '\n';
+  expected += packet_bytes(4000000000U, 0x01020304);
+  EXPECT_EQ(drain(line), expected);
+  web.offer(2, packet);
+  expected = "\x82\x40";
+  expected += packet_bytes(2, 0x01020304);
+  EXPECT_EQ(drain(web), expected);
+}
+
+TEST_F(OutboxTest, LargePacketsHaveTheLengthsOfTheStandardToo) {
+  const auto pool = std::make_shared<PacketPool>();
+  // 40 + 4 n bytes: the last of 7 bits, the first and last of 16, the first of 64.
+  for (const std::size_t floats : {20U, 21U, 22U, 16373U, 16374U, 16375U}) {
+    const auto packet = pool->take(floats);
+    packet->source = 1;
+    packet->header.payload_bytes = static_cast<std::uint32_t>(4 * floats);
+    const std::size_t size = 40 + 4 * floats;
+    std::string expected = size < 126 ? "" : size <= 65535 ? "\x7E" : "\x7F";
+    if (size < 126) expected += static_cast<char>(size);
+    for (int i = size < 126 ? -1 : size <= 65535 ? 1 : 7; i >= 0; --i) {
+      expected += static_cast<char>(static_cast<unsigned char>(size >> (8U * static_cast<unsigned>(i))));
+    }
+    web.offer(1, packet);
+    const std::string wire = drain(web);
+    EXPECT_EQ(wire[0], '\x82');
+    EXPECT_EQ(wire.substr(1, expected.size()), expected) << size;
+    EXPECT_EQ(wire.size(), 1 + expected.size() + size);
+  }
+}
+
+TEST_F(OutboxTest, ManyReadersShareOnePayload) {
+  Outbox other(Framing::WebSocket, metrics);
+  const PacketPtr packet = make_packet(0);
+  line.offer(1, packet);
+  other.offer(9, packet);
+  const auto mine = line.take();
+  const auto theirs = other.take();
+  EXPECT_EQ(mine[1].data(), theirs[1].data());
+  EXPECT_EQ(mine[1].data(), packet->payload.data());
+  EXPECT_NE(std::memcmp(mine[0].data(), theirs[0].data(), 8), 0) << "headers are each reader's own";
+}
+
+TEST_F(OutboxTest, APacketThatIsBeingWrittenIsNotReplaced) {
+  line.offer(1, make_packet(0));
+  const std::string first = bytes_of(line);
+  line.offer(1, make_packet(1));
+  EXPECT_EQ(metrics.packets_skipped_total.load(), 0);
+  line.written();
+  EXPECT_EQ(header_in(first).sequence, 0U);
+  EXPECT_EQ(header_in(drain(line)).sequence, 1U);
+}
+
+TEST_F(OutboxTest, ADiscontinuityIsCarriedOnce) {
+  line.offer(1, make_packet(0, protocol::kFlagKey | protocol::kFlagDiscontinuity));
+  line.offer(1, make_packet(1));
+  EXPECT_EQ(header_in(drain(line)).flags, protocol::kFlagKey | protocol::kFlagDiscontinuity);
+  line.offer(1, make_packet(2));
+  EXPECT_EQ(header_in(drain(line)).flags, protocol::kFlagKey);
+}
+
+TEST_F(OutboxTest, ReplacingKeepsTheTurnOfTheStream) {
+  line.offer(1, make_packet(0));
+  line.offer(2, make_packet(0));
+  line.offer(1, make_packet(5));  // stream 1 has waited longer and still goes first
+  const std::string wire = drain(line);
+  EXPECT_LT(wire.find("\"stream\":1,"), wire.find("\"stream\":2,"));
+}
+
+TEST_F(OutboxTest, EachStreamHasItsOwnNumbers) {
+  line.offer(1, make_packet(7, protocol::kFlagKey, 5));
+  static_cast<void>(drain(line));
+  line.offer(2, make_packet(3, protocol::kFlagKey, 6));
+  EXPECT_EQ(header_in(drain(line)).sequence, 3U);
+  line.forget_stream(1);
+  line.offer(1, make_packet(100, protocol::kFlagKey, 6));
+  EXPECT_EQ(header_in(drain(line)).sequence, 100U) << "a forgotten stream has no history";
+}
+
+TEST_F(OutboxTest, NumbersGoOnOverSkippedProducersAndTheEndOfTheRange) {
+  line.offer(1, make_packet(0xFFFFFFFFU, protocol::kFlagKey, 5));
+  EXPECT_EQ(header_in(drain(line)).sequence, 0xFFFFFFFFU);
+  line.offer(1, make_packet(9, protocol::kFlagKey, 6));  // replaced before it is sent
+  line.offer(1, make_packet(20, protocol::kFlagKey, 7));
+  EXPECT_EQ(header_in(drain(line)).sequence, 0U);
+  line.offer(1, make_packet(22, protocol::kFlagKey, 7));
+  EXPECT_EQ(header_in(drain(line)).sequence, 2U);
+}
+
+TEST_F(OutboxTest, AWriteTakesPacketsInThePlaceThatAnswersLeave) {
+  for (int i = 0; i < 30; ++i) line.push_text("x");
+  for (std::uint32_t stream = 1; stream <= 10; ++stream) line.offer(stream, make_packet(0));
+  EXPECT_EQ(line.take().size(), 30U * 2U + 2U * 2U);  // text and its end; framing and payload
+  line.written();
+  line.push_text("late");
+  const std::string wire = drain(line);
+  EXPECT_EQ(wire.substr(0, 5), "late\n");
+  EXPECT_NE(wire.find("\"stream\":10,"), std::string::npos);
+  EXPECT_EQ(metrics.packets_sent_total.load(), 10);
+  EXPECT_TRUE(line.empty());
+}
+
+TEST_F(OutboxTest, IsNotEmptyWhileSomethingIsBeingWritten) {
+  line.push_text("x");
+  static_cast<void>(line.take());
+  EXPECT_FALSE(line.empty());
+  line.written();
+  EXPECT_TRUE(line.empty());
+}
+
+TEST_F(OutboxTest, PacketsCongestNothing) {
+  const auto pool = std::make_shared<PacketPool>();
+  const auto packet = pool->take(Outbox::kOverflowBytes / 2);
+  packet->header.payload_bytes = static_cast<std::uint32_t>(packet->payload_bytes().size());
+  line.offer(1, packet);
+  EXPECT_FALSE(line.congested());
+  EXPECT_FALSE(line.overflowed());
+}
+
 }  // namespace
 }  // namespace tweend::net

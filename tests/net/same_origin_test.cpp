@@ -52,5 +52,29 @@ TEST(SameOrigin, RefusalsSayWhatWasExpectedAndFound) {
   EXPECT_NE(refuse_origin("127.0.0.1", "null", {}).find("\"null\""), std::string::npos);
 }
 
+TEST(SameOrigin, HostsThatOnlyBeginLikeAnAddressAreNone) {
+  for (const char* host : {"[::1]evil.example", "[::1].evil.example:80", "127.0.0.1evil.example", "[evil.example]:80", "[::1",
+                           "::1]", "0x7f000001", "2130706433", "127.1", "localhost@evil.example", "evil.example:127.0.0.1"}) {
+    EXPECT_FALSE(passes(host)) << host;
+  }
+}
+
+TEST(SameOrigin, AnAllowedHostMayComeWithAPortButNotAsPartOfAnother) {
+  const std::vector<std::string> allowed{"https://studio.example:444", "http://[2001:db8::1]"};
+  EXPECT_TRUE(passes("studio.example:444", std::nullopt, allowed));
+  EXPECT_TRUE(passes("STUDIO.example:8933", std::nullopt, allowed));
+  EXPECT_TRUE(passes("studio.example:8933", "HTTPS://studio.example:444", allowed));
+  EXPECT_FALSE(passes("studio.example:8933", "https://studio.example", allowed)) << "another port is another origin";
+  EXPECT_FALSE(passes("notstudio.example", std::nullopt, allowed));
+  EXPECT_FALSE(passes("studio.example.evil", std::nullopt, allowed));
+  EXPECT_FALSE(passes("127.0.0.1:8933", "https://studio.example:444.evil", allowed));
+  EXPECT_TRUE(passes("127.0.0.1:8933", "http://[2001:db8::1]", allowed));
+}
+
+TEST(SameOrigin, ARebindingPageHasItsOwnNameInBothHeaders) {
+  EXPECT_FALSE(passes("evil.example:8933", "http://evil.example:8933"));
+  EXPECT_FALSE(passes("evil.example:8933", "http://evil.example:8933", {"https://studio.example"}));
+}
+
 }  // namespace
 }  // namespace tweend::net

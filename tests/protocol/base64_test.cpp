@@ -41,9 +41,13 @@ void expect_refused(const std::string& text) {
 }
 
 TEST(Base64, HasTheVectorsOfTheStandard) {
-  const std::vector<std::pair<std::string, std::string>> vectors{
-      {"", ""},          {"f", "Zg=="},        {"fo", "Zm8="},        {"foo", "Zm9v"}, {"foob", "Zm9vYg=="},
-      {"fooba", "Zm9vYmE="}, {"foobar", "Zm9vYmFy"}};
+  const std::vector<std::pair<std::string, std::string>> vectors{{"", ""},
+                                                                 {"f", "Zg=="},
+                                                                 {"fo", "Zm8="},
+                                                                 {"foo", "Zm9v"},
+                                                                 {"foob", "Zm9vYg=="},
+                                                                 {"fooba", "Zm9vYmE="},
+                                                                 {"foobar", "Zm9vYmFy"}};
   for (const auto& [plain, text] : vectors) {
     EXPECT_EQ(encoded(bytes_of(plain)), text);
     const auto back = decode_base64(text);

@@ -49,16 +49,17 @@ TEST(Envelope, TakesTheMembersInAnyOrderAndOthersBesideThem) {
 }
 
 TEST(Envelope, GivesIdsBackAsTheyCame) {
-  for (const auto& [id, back] : std::vector<std::pair<std::string, std::string>>{{"7", "7"},
-                                                                               {"-3", "-3"},
-                                                                               {"0", "0"},
-                                                                               {"9007199254740993", "9007199254740993"},
-                                                                               {"18446744073709551615", "18446744073709551615"},
-                                                                               {"1.5", "1.5"},
-                                                                               {"\"\"", "\"\""},
-                                                                               {"\"a\"", "\"a\""},
-                                                                               {"\"\\\"\\n\\u00e9\"", "\"\\\"\\n\u00e9\""},
-                                                                               {"null", "null"}}) {
+  for (const auto& [id, back] :
+       std::vector<std::pair<std::string, std::string>>{{"7", "7"},
+                                                        {"-3", "-3"},
+                                                        {"0", "0"},
+                                                        {"9007199254740993", "9007199254740993"},
+                                                        {"18446744073709551615", "18446744073709551615"},
+                                                        {"1.5", "1.5"},
+                                                        {"\"\"", "\"\""},
+                                                        {"\"a\"", "\"a\""},
+                                                        {"\"\\\"\\n\\u00e9\"", "\"\\\"\\n\u00e9\""},
+                                                        {"null", "null"}}) {
     const Message message = parse(R"({"jsonrpc":"2.0","method":"m","id":)"s + id + "}");
     ASSERT_TRUE(std::holds_alternative<Request>(message.items[0])) << id;
     EXPECT_EQ(request(message).id, back);
@@ -124,12 +125,12 @@ TEST(Envelope, TakesTheMixedBatchOfTheSpecification) {
 }
 
 TEST(Envelope, KeepsTheIdOfWhatElseIsMalformed) {
-  for (const char* rest : {R"("method":"m")", R"("jsonrpc":"1.0","method":"m")", R"("jsonrpc":2.0,"method":"m")",
-                           R"("jsonrpc":null,"method":"m")", R"("jsonrpc":"2.0")", R"("jsonrpc":"2.0","method":7)",
-                           R"("jsonrpc":"2.0","method":null)", R"("jsonrpc":"2.0","method":["m"])",
-                           R"("jsonrpc":"2.0","result":1)", R"("jsonrpc":"2.0","method":"m","params":5)",
-                           R"("jsonrpc":"2.0","method":"m","params":"x")", R"("jsonrpc":"2.0","method":"m","params":null)",
-                           R"("jsonrpc":"2.0","method":"m","params":true)"}) {
+  for (const char* rest :
+       {R"("method":"m")", R"("jsonrpc":"1.0","method":"m")", R"("jsonrpc":2.0,"method":"m")", R"("jsonrpc":null,"method":"m")",
+        R"("jsonrpc":"2.0")", R"("jsonrpc":"2.0","method":7)", R"("jsonrpc":"2.0","method":null)",
+        R"("jsonrpc":"2.0","method":["m"])", R"("jsonrpc":"2.0","result":1)", R"("jsonrpc":"2.0","method":"m","params":5)",
+        R"("jsonrpc":"2.0","method":"m","params":"x")", R"("jsonrpc":"2.0","method":"m","params":null)",
+        R"("jsonrpc":"2.0","method":"m","params":true)"}) {
     expect_rejected("{\"id\":\"q\","s + rest + "}", ErrorCode::InvalidRequest, "\"q\"");
     expect_rejected("{"s + rest + "}", ErrorCode::InvalidRequest);
   }

@@ -125,8 +125,9 @@ TEST(Decode, TakesNamesOfTheLettersThatCommandsMayUse) {
     EXPECT_EQ(read<Name>(std::string("\"") + letter + "\"").has_value(), good && letter != '.') << letter;
   }
   EXPECT_EQ(read<Name>("\""s + std::string(64, 'n') + "\"")->text, std::string(64, 'n'));
-  for (const std::string& bad : {std::string(), std::string(65, 'n'), std::string(".."), std::string("a/b"), std::string("\\u0000"),
-                                 std::string("a\\u0000"), std::string("caf\u00e9"), std::string(1000, 'n')}) {
+  for (const std::string& bad :
+       {std::string(), std::string(65, 'n'), std::string(".."), std::string("a/b"), std::string("\\u0000"),
+        std::string("a\\u0000"), std::string("caf\u00e9"), std::string(1000, 'n')}) {
     const auto result = read<Name>("\""s + bad + "\"");
     ASSERT_FALSE(result) << bad;
     expect_invalid(result.error(), "params.value", "a name");

@@ -94,8 +94,9 @@ TEST(Encode, WritesTheExtremesOfIntegers) {
 TEST(Encode, TextsReadBackWhateverTheyHold) {
   std::string all;
   for (int c = 0; c < 128; ++c) all += static_cast<char>(c);
-  for (const std::string& text : {std::string(), all, std::string("\"\\/\b\f\n\r\t"), std::string("caf\u00e9 \u20ac \U0001F600"),
-                                  std::string("\u2028\u2029\uFEFF"), std::string(3, '\0')}) {
+  for (const std::string& text :
+       {std::string(), all, std::string("\"\\/\b\f\n\r\t"), std::string("caf\u00e9 \u20ac \U0001F600"),
+        std::string("\u2028\u2029\uFEFF"), std::string(3, '\0')}) {
     const std::string json = encode(text);
     for (const char c : json) EXPECT_GE(static_cast<unsigned char>(c), 0x20) << "a raw control character";
     EXPECT_EQ(nlohmann::json::parse(json).get<std::string>(), text);

@@ -76,16 +76,45 @@ TEST(JsonValue, RefusesNulBytesWhereverTheyStand) {
 }
 
 TEST(JsonValue, RefusesWhatIsNoJson) {
-  for (const char* text :
-       {"", " ", "{", "}", "[1,]", "{\"a\":1,}", "{a:1}", "{'a':1}", "[1 2]", "[1] 2", "{} {}", "nul", "True", "NaN", "Infinity",
-        "-", "+1", "01", "1.", ".5", "1e", "0x10", "\"\t\"", "\"\\x41\"", "\"\\u12\"", "\"\\ud800\"", "\"\\udc00\\ud800\"",
-        "/* */ 1", "1 // one", "\"\xFF\"", "\"\xC3\"", "\"\xED\xA0\x80\""}) {
+  for (const char* text : {"",
+                           " ",
+                           "{",
+                           "}",
+                           "[1,]",
+                           "{\"a\":1,}",
+                           "{a:1}",
+                           "{'a':1}",
+                           "[1 2]",
+                           "[1] 2",
+                           "{} {}",
+                           "nul",
+                           "True",
+                           "NaN",
+                           "Infinity",
+                           "-",
+                           "+1",
+                           "01",
+                           "1.",
+                           ".5",
+                           "1e",
+                           "0x10",
+                           "\"\t\"",
+                           "\"\\x41\"",
+                           "\"\\u12\"",
+                           "\"\\ud800\"",
+                           "\"\\udc00\\ud800\"",
+                           "/* */ 1",
+                           "1 // one",
+                           "\"\xFF\"",
+                           "\"\xC3\"",
+                           "\"\xED\xA0\x80\""}) {
     EXPECT_EQ(code_of(text), ErrorCode::Parse) << text;
   }
 }
 
 TEST(JsonValue, TakesAnyValueOnItsOwn) {
-  for (const char* text : {"null", "true", "false", "0", "-0", "1e5", "-1.5E-3", "\"\"", "\"\\ud83d\\ude00\"", "[]", "{}", " \t\r\n1\n"}) {
+  for (const char* text :
+       {"null", "true", "false", "0", "-0", "1e5", "-1.5E-3", "\"\"", "\"\\ud83d\\ude00\"", "[]", "{}", " \t\r\n1\n"}) {
     EXPECT_TRUE(parses(text)) << text;
   }
 }

@@ -7,6 +7,8 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
 #include "tests/support/controlled_store.hpp"
@@ -134,6 +136,74 @@ TEST(CommitQueue, WhatIsReportedDoneIsWrittenWhereverTheDiskFails) {
     EXPECT_EQ(reports.failed(), (std::vector<std::uint64_t>{failing + 1}));
     EXPECT_EQ(reports.done().size(), 5U);
   }
+}
+
+// The writer is held up at commit N of a row, which then fails: all that has queued behind it falls with it, unwritten.
+TEST(CommitQueue, EverythingBehindAFailureFallsWithItAndNothingBeforeIt) {
+  for (std::uint64_t failing = 1; failing <= 5; ++failing) {
+    test::ControlledStore disk;
+    Reports reports;
+    CommitQueue queue(disk, reports.taker());
+    for (std::uint64_t t = 1; t < failing; ++t) {
+      queue.push(t, 3, commit(t));
+      reports.wait_for_tickets(t);
+    }
+    disk.hold();
+    disk.fail_next(1);
+    queue.push(failing, 3, commit(failing));
+    disk.wait_for_commits(failing);
+    for (std::uint64_t t = failing + 1; t <= 10; ++t) queue.push(t, 3, commit(t));
+    queue.push(11, 4, commit(11));  // whoever builds edits has started again
+    queue.push(12, 4, commit(12));
+    disk.release();
+    reports.wait_for_tickets(12);
+    std::vector<std::uint64_t> lost, kept;
+    for (std::uint64_t t = 1; t <= 12; ++t) (t < failing || t > 10 ? kept : lost).push_back(t);
+    EXPECT_EQ(reports.failed(), lost);
+    EXPECT_EQ(reports.done(), kept);
+    std::vector<std::string> written;
+    for (const auto& group : disk.groups()) {
+      for (const Commit& c : group) written.push_back(c.method);
+    }
+    std::vector<std::string> asked;
+    for (std::uint64_t t = 1; t <= failing; ++t) asked.push_back(std::to_string(t));
+    asked.insert(asked.end(), {"11", "12"});
+    EXPECT_EQ(written, asked) << "what fell was never written";
+  }
+}
+
+TEST(CommitQueue, TellsEachOfTheLostWhy) {
+  test::ControlledStore disk;
+  disk.fail_next(1);
+  std::vector<CommitQueue::Group> groups;
+  {
+    CommitQueue queue(disk, [&groups](CommitQueue::Group group) { groups.push_back(std::move(group)); });
+    queue.push(1, 1, commit(1));
+    disk.wait_for_commits(1);
+    queue.push(2, 1, commit(2));
+  }
+  ASSERT_FALSE(groups.empty());
+  for (const CommitQueue::Group& group : groups) {
+    ASSERT_FALSE(group.status);
+    EXPECT_EQ(group.status.error().code, ErrorCode::Unavailable);
+    EXPECT_EQ(group.status.error().message, "the disk is full");
+  }
+}
+
+TEST(CommitQueue, StoppingReportsWhatFailsWhileItStops) {
+  test::ControlledStore disk;
+  Reports reports;
+  disk.hold();
+  disk.fail_next(1);
+  CommitQueue queue(disk, reports.taker());
+  queue.push(1, 1, commit(1));
+  disk.wait_for_commits(1);
+  for (std::uint64_t t = 2; t <= 20; ++t) queue.push(t, 1, commit(t));
+  disk.release();
+  queue.stop();
+  queue.stop();
+  EXPECT_EQ(reports.failed().size(), 20U);
+  EXPECT_TRUE(reports.done().empty());
 }
 
 }  // namespace

@@ -1,0 +1,147 @@
+#include "server/streams/mailbox.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/support/allocations.hpp"
+
+namespace tweend::streams {
+namespace {
+
+using test::allocations;
+
+/// Notes what it is given, without taking memory for it.
+class NotingSink final : public PacketSink {
+ public:
+  NotingSink() { sequences.reserve(100'000); }
+  void offer(std::uint32_t, const PacketPtr& packet) override { sequences.push_back(packet->header.sequence); }
+  void ended(std::uint32_t, const std::string&) override {}
+  std::vector<std::uint32_t> sequences;
+};
+
+struct Letters {
+  PacketPtr packet(std::uint32_t sequence) const {
+    const auto made = pool->take(6);
+    made->header.sequence = sequence;
+    return made;
+  }
+  std::shared_ptr<PacketPool> pool = std::make_shared<PacketPool>();
+  std::shared_ptr<NotingSink> sink = std::make_shared<NotingSink>();
+  std::shared_ptr<const Subscriptions> to = std::make_shared<const Subscriptions>(Subscriptions{{sink, 1}});
+};
+
+TEST(Mailbox, HandsOverOnlyOnTheOtherThread) {
+  std::vector<Task> posted;
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  const Letters letters;
+  mailbox.put({letters.packet(1), letters.to});
+  EXPECT_TRUE(letters.sink->sequences.empty());
+  ASSERT_EQ(posted.size(), 1U);
+  posted[0]();
+  EXPECT_EQ(letters.sink->sequences, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(Mailbox, WakesTheOtherThreadOnceForAllThatWait) {
+  std::vector<Task> posted;
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  const Letters letters;
+  for (std::uint32_t i = 0; i < 5; ++i) mailbox.put({letters.packet(i), letters.to});
+  ASSERT_EQ(posted.size(), 1U);
+  posted[0]();
+  EXPECT_EQ(letters.sink->sequences.size(), 5U);
+  mailbox.put({letters.packet(5), letters.to});
+  ASSERT_EQ(posted.size(), 2U) << "and again for what comes later";
+  posted[1]();
+  EXPECT_EQ(letters.sink->sequences.size(), 6U);
+}
+
+TEST(Mailbox, KeepsCallsInTheirPlaceBetweenPackets) {
+  std::vector<Task> posted;
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  const Letters letters;
+  mailbox.put({letters.packet(1), letters.to});
+  mailbox.call([&] { letters.sink->sequences.push_back(1000); });
+  mailbox.put({letters.packet(2), letters.to});
+  posted[0]();
+  EXPECT_EQ(letters.sink->sequences, (std::vector<std::uint32_t>{1, 1000, 2}));
+}
+
+TEST(Mailbox, TakesMoreWhileItIsEmptied) {
+  std::vector<Task> posted;
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  const Letters letters;
+  mailbox.call([&] { mailbox.put({letters.packet(1), letters.to}); });
+  posted[0]();
+  ASSERT_EQ(posted.size(), 2U);
+  posted[1]();
+  EXPECT_EQ(letters.sink->sequences, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(Mailbox, PassesOverSinksThatAreGone) {
+  std::vector<Task> posted;
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  const Letters letters;
+  auto gone = std::make_shared<NotingSink>();
+  const auto to = std::make_shared<const Subscriptions>(Subscriptions{{gone, 1}, {letters.sink, 2}});
+  mailbox.put({letters.packet(1), to});
+  gone.reset();
+  posted[0]();
+  EXPECT_EQ(letters.sink->sequences.size(), 1U);
+}
+
+TEST(Mailbox, LetsGoOfPacketsThatWereHandedOver) {
+  std::vector<Task> posted;
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  const Letters letters;
+  PacketPtr packet = letters.packet(1);
+  const Packet* const address = packet.get();
+  mailbox.put({packet, letters.to});
+  posted[0]();
+  packet.reset();
+  EXPECT_EQ(letters.pool->take(6).get(), address) << "it has come home";
+}
+
+TEST(Mailbox, TakesNoMemoryForAPacketOnceItHasGrown) {
+  Task waiting;
+  Mailbox mailbox([&](Task task) { waiting = std::move(task); });
+  const Letters letters;
+  const auto run = [&](std::uint32_t rounds) {
+    for (std::uint32_t i = 0; i < rounds; ++i) {
+      for (std::uint32_t k = 0; k < 3; ++k) mailbox.put({letters.packet(i), letters.to});
+      waiting();
+    }
+  };
+  run(10);
+  const std::size_t before = allocations();
+  run(1000);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(Mailbox, KeepsTheOrderOfEachThreadThatPuts) {
+  WorkerPool reader(1);
+  const Letters letters;
+  {
+    Mailbox mailbox([&](Task task) { reader.post(std::move(task)); });
+    std::vector<std::thread> writers;
+    for (std::uint32_t t = 0; t < 3; ++t) {
+      writers.emplace_back([&, t] {
+        for (std::uint32_t i = 0; i < 3000; ++i) mailbox.put({letters.packet(t * 10'000 + i), letters.to});
+      });
+    }
+    for (std::thread& writer : writers) writer.join();
+    reader.stop();  // carries out what waits
+  }
+  ASSERT_EQ(letters.sink->sequences.size(), 9000U);
+  std::vector<std::uint32_t> next{0, 10'000, 20'000};
+  for (const std::uint32_t sequence : letters.sink->sequences) EXPECT_EQ(sequence, next[sequence / 10'000]++);
+}
+
+}  // namespace
+}  // namespace tweend::streams

@@ -1,0 +1,116 @@
+#include "server/streams/packet.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <set>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "tests/support/allocations.hpp"
+
+namespace tweend::streams {
+namespace {
+
+using test::allocations;
+
+TEST(PacketPool, GivesAPacketOfTheSizeAskedFor) {
+  const auto pool = std::make_shared<PacketPool>();
+  EXPECT_EQ(pool->take(12)->payload.size(), 12U);
+  EXPECT_EQ(pool->take(3)->payload.size(), 3U);
+  EXPECT_EQ(pool->take(24)->payload_bytes().size(), 96U);
+  EXPECT_TRUE(pool->take(0)->payload_bytes().empty());
+}
+
+TEST(PacketPool, GivesTheSamePacketAgainWithAFreshHeader) {
+  const auto pool = std::make_shared<PacketPool>();
+  auto packet = pool->take(6);
+  packet->header.sequence = 77;
+  packet->header.flags = protocol::kFlagLast;
+  const Packet* first = packet.get();
+  const float* payload = packet->payload.data();
+  packet.reset();
+  packet = pool->take(6);
+  EXPECT_EQ(packet.get(), first);
+  EXPECT_EQ(packet->payload.data(), payload);
+  EXPECT_EQ(packet->header, protocol::PacketHeader{});
+}
+
+TEST(PacketPool, NeverGivesAPacketThatSomebodyReads) {
+  const auto pool = std::make_shared<PacketPool>();
+  std::vector<PacketPtr> held;
+  std::set<const Packet*> addresses;
+  for (int i = 0; i < 20; ++i) {
+    held.push_back(pool->take(6));
+    EXPECT_TRUE(addresses.insert(held.back().get()).second);
+  }
+  const PacketPtr reader = held.front();
+  held.clear();
+  for (int i = 0; i < 20; ++i) {
+    held.push_back(pool->take(6));
+    EXPECT_NE(held.back(), reader);
+  }
+}
+
+TEST(PacketPool, TakesNoMemoryOnceItIsWarm) {
+  const auto pool = std::make_shared<PacketPool>();
+  const auto run = [&](int rounds) {
+    PacketPtr latest;
+    PacketPtr on_a_socket;
+    for (int i = 0; i < rounds; ++i) {
+      const PacketPtr made = pool->take(6000);
+      on_a_socket = latest;
+      latest = made;
+    }
+  };
+  run(10);
+  const std::size_t before = allocations();
+  run(1000);
+  EXPECT_EQ(allocations(), before);
+  const std::vector<int> some(100);
+  EXPECT_GT(allocations(), before) << "the counter counts " << some.size();
+}
+
+TEST(PacketPool, MayGoBeforeItsPackets) {
+  auto pool = std::make_shared<PacketPool>();
+  const std::weak_ptr<PacketPool> watched = pool;
+  PacketPtr packet = pool->take(6);
+  pool.reset();
+  EXPECT_FALSE(watched.expired()) << "a packet on a socket needs it to come home";
+  packet.reset();
+  EXPECT_TRUE(watched.expired()) << "packets at home do not keep it";
+}
+
+TEST(PacketPool, LetsGoOfPacketsBeyondAFew) {
+  const auto pool = std::make_shared<PacketPool>();
+  std::vector<PacketPtr> many;
+  for (int i = 0; i < 100; ++i) many.push_back(pool->take(6));
+  many.clear();
+  const std::size_t at_rest = allocations();
+  for (int i = 0; i < 100; ++i) many.push_back(pool->take(6));
+  EXPECT_GT(allocations(), at_rest) << "a burst is not kept for ever";
+}
+
+TEST(PacketPool, ServesManyThreads) {
+  const auto pool = std::make_shared<PacketPool>();
+  std::atomic<int> wrong{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t) {
+    threads.emplace_back([&, t] {
+      for (int i = 0; i < 2000; ++i) {
+        const auto packet = pool->take(8);
+        packet->payload.assign(8, static_cast<float>(t));
+        std::vector<PacketPtr> readers(3, packet);
+        for (const float value : readers.back()->payload) wrong += value == static_cast<float>(t) ? 0 : 1;
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace tweend::streams
