@@ -115,6 +115,10 @@ Result<Source> import_asset(const std::string& name, const Services& services) {
 
 Result<Source> make_mesh(const MeshParams& p, const Services& services) {
   const std::size_t vertices = p.positions.size() / 3;
+  if (p.positions.size() % 3 != 0) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected three numbers a vertex, found {} numbers", p.positions.size()),
+                "params.mesh.positions");
+  }
   if (vertices > services.limits.vertices_per_actor) {
     return fail(ErrorCode::Limit,
                 fmt::format("expected at most {} vertices, found {}", services.limits.vertices_per_actor, vertices),

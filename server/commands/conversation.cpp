@@ -340,8 +340,8 @@ void Conversation::flush() {
     }
     if (unit.batch && !text.empty()) text += ']';
     queued_bytes_ -= unit.bytes;
+    if (cursor_.unit == unit.number) cursor_ = {unit.number + 1, 0};
     units_.pop_front();
-    if (cursor_.unit < next_unit_ && units_.empty()) cursor_ = {next_unit_, 0};
     if (!text.empty()) peer_->send(std::move(text));
     for (const Task& task : afterwards) task();
   }

@@ -110,10 +110,10 @@ Result<Endpoint> parse_endpoint(const std::string& text) {
 }
 
 struct Network::Impl {
+  std::unique_ptr<SessionContext> context;  // outlives the sessions, which go with io
   asio::io_context io{1};
   asio::executor_work_guard<asio::io_context::executor_type> work{io.get_executor()};
   Tcp::acceptor acceptor{io};
-  std::unique_ptr<SessionContext> context;
   Endpoint endpoint;
   std::thread thread;
 
