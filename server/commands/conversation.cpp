@@ -172,7 +172,8 @@ bool Conversation::may_start(const Item& item) const noexcept {
     case Shape::Query:
     case Shape::WorkerQuery:
     case Shape::Connection:
-      return outstanding_ == 0;
+      // A heavy edit may be answered before its worker has said that it is done.
+      return outstanding_ == 0 && !worker_busy_;
   }
   return false;
 }

@@ -95,6 +95,10 @@ class Server:
         with open(f"/proc/{self.process.pid}/status") as f:
             return next(int(line.split()[1]) / 1024 for line in f if line.startswith("VmRSS:"))
 
+    def sanitized(self):
+        with open(f"/proc/{self.process.pid}/maps") as f:
+            return any("san.so" in line for line in f)
+
     def stop(self, signal_number=signal.SIGTERM):
         """Ends it as an administrator would; its exit code."""
         if self.process.poll() is None:
@@ -169,6 +173,10 @@ class TestCase(unittest.TestCase):
         before = self.snapshot(scene)
         yield
         self.assertEqual(self.snapshot(scene), before)
+
+    def grew_less(self, before_mib, mib):
+        """Since it held so much, the server has grown by less than that; a sanitizer holds a multiple of it."""
+        self.assertLess(self.server.rss_mib() - before_mib, mib * (6 if self.server.sanitized() else 1))
 
     def near(self, got, want, tolerance=1e-5):
         self.assertEqual(len(got), len(want))

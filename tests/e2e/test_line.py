@@ -219,6 +219,19 @@ class Pipelines(harness.TestCase):
             self.run_pipeline(self.c, count, rng)
         self.run_pipeline(self.server.line(), 300, rng)
 
+    def test_edits_never_change_places(self):
+        """An edit that takes long, behind one that is refused at once and a query, and before a quick one."""
+        mesh = harness.grid(40)
+        self.c.call("actor.add", actor="grid", mesh=mesh)
+        vertices = {"positions": mesh["positions"]}
+        self.c.call("keyframe.add", actor="grid", time=0, vertices=vertices)
+        for i in range(1, 301):
+            self.c.send("keyframe.add", actor="grid", time=0, capture=True)  # the time is taken
+            self.c.send("asset.list")
+            slow = self.c.send("keyframe.add", actor="grid", time=i, vertices=vertices)
+            quick = self.c.send("camera.set", fov_y=1)
+            self.assertLess(self.c.answer(slow)["revision"], self.c.answer(quick)["revision"])
+
     def test_a_pipeline_longer_than_what_waits_at_once(self):
         count = 5000
         self.c.sock.settimeout(30)

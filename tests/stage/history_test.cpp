@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 #include <string>
 #include <variant>
@@ -93,6 +94,15 @@ TEST(History, KeepsTheChangesOfEachStepThroughItsOwnTidying) {
     EXPECT_EQ(std::get<SetActor>(history.top().changes[0]).actor, std::to_string(i));
     history = history.popped();
   }
+}
+
+// The limit is an option: however many steps are kept, letting go of them takes no stack.
+TEST(HistoryDeathTest, LetsGoOfHundredsOfThousandsOfSteps) {
+  const auto forget_many = [] {
+    { const History history = pushed_n(300'000, 1'000'000); }
+    std::_Exit(0);
+  };
+  EXPECT_EXIT(forget_many(), ::testing::ExitedWithCode(0), "");
 }
 
 TEST(History, OfNoStepsForgetsAtOnce) { EXPECT_TRUE(pushed_n(3, 0).empty()); }
