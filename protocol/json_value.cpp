@@ -39,7 +39,11 @@ std::size_t nesting_depth(std::string_view text) noexcept {
 std::string reason(const nlohmann::json::exception& e) {
   const std::string_view what = e.what();
   const auto at = what.find("] ");
-  return std::string(at == std::string_view::npos ? what : what.substr(at + 2));
+  std::string text(at == std::string_view::npos ? what : what.substr(at + 2));
+  // It quotes the text as far as it was read, which may be half a character: an answer is UTF-8 whatever was asked.
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) >= 0x80; }, '?');
+  return text;
 }
 
 }  // namespace

@@ -16,8 +16,6 @@ WorkerPool::~WorkerPool() { stop(); }
 
 void WorkerPool::post(Task task) { boost::asio::post(impl_->pool, std::move(task)); }
 
-void WorkerPool::stop() {
-  impl_->pool.join();
-}
+void WorkerPool::stop() { impl_->pool.join(); }
 
 }  // namespace tweend

@@ -97,7 +97,7 @@ tweend::Limits small_limits() {
 /// What decoding promises of the values it lets in.
 void check(const Everything& e) {
   if (e.time) require(std::isfinite(*e.time) && *e.time >= 0.0);
-  if (e.near) require(std::isfinite(*e.near) && *e.near >= 0.0F);
+  if (e.near) require(std::isfinite(*e.near) && *e.near > 0.0F);
   if (e.text) require(is_utf8(*e.text));
   if (e.name) require(!e.name->text.empty() && e.name->text.size() <= 64 && e.name->text[0] != '.');
   if (e.positions) {

@@ -109,6 +109,16 @@ TEST(Decode, AFloatThatMustBePositiveIsStillSoAsAFloat) {
   expect_read<float, kPositive>("1e-40", 1e-40F);
 }
 
+TEST(Decode, AFloatMayLieOnTheEndsOfItsRangeThoughNoFloatDoesExactly) {
+  constexpr Range kAngle{.min = 0.01, .max = 3.1};  // 0.01F lies just below 0.01
+  expect_read<float, kAngle>("0.01", 0.01F);
+  expect_read<float, kAngle>("3.1", 3.1F);
+  constexpr Range kElevation{.min = -1.5707, .max = 1.5707};  // 1.5707F lies just above 1.5707
+  expect_read<float, kElevation>("1.5707", 1.5707F);
+  expect_read<float, kElevation>("-1.5707", -1.5707F);
+  expect_refused<float, kAngle>("from 0.01 to 3.1", {"0.0099", "3.1001"}, {});
+}
+
 TEST(Decode, TakesTexts) {
   expect_read<std::string>("\"\"", "");
   expect_read<std::string>(R"("a\"\\\/\b\f\n\r\t\u00e9\ud83d\ude00")", "a\"\\/\b\f\n\r\t\u00e9\U0001F600");

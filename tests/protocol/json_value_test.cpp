@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "protocol/utf8.hpp"
 #include "tests/protocol/described.hpp"
 
 namespace tweend::protocol {
@@ -132,6 +133,17 @@ TEST(JsonValue, SaysWhereTheTextIsBroken) {
   const auto result = JsonValue::parse("{\"a\":1,\n  \"b\" 2}", {});
   ASSERT_FALSE(result);
   EXPECT_NE(result.error().message.find("line 2"), std::string::npos) << result.error().message;
+}
+
+TEST(JsonValue, ExplainsInUtf8WhatIsBrokenInsideACharacter) {
+  // The reader stops at the first byte of each; the answer must not hold half a character.
+  for (const char* text :
+       {"[\u0384]", "{\"a\":\u20ac}", "\U0001F600", "[1,\"ok\",\u00e9 ]", "tr\u00e9s", "1\u20ac", "\"\\\u00e9\""}) {
+    const auto result = JsonValue::parse(text, {});
+    ASSERT_FALSE(result) << text;
+    EXPECT_EQ(result.error().code, ErrorCode::Parse);
+    EXPECT_TRUE(is_utf8(result.error().message)) << result.error().message;
+  }
 }
 
 TEST(JsonValue, IsAnEmptyObjectAtFirst) {
