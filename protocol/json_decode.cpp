@@ -36,7 +36,8 @@ Status number_into(const json& j, T& out, const Range& range, const std::string&
   if (!j.is_number()) return wrong(path, expected(), j);
   const double v = j.get<double>();
   const T narrow = static_cast<T>(v);
-  if (!std::isfinite(narrow) || !inside(static_cast<double>(narrow), range)) return wrong(path, expected(), j);
+  const bool vanished = range.min_excluded && !(static_cast<double>(narrow) > range.min);  // 1e-50 as a float
+  if (!std::isfinite(narrow) || !inside(v, range) || vanished) return wrong(path, expected(), j);
   out = narrow;
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace tweend::commands {
@@ -16,8 +17,11 @@ Result<Params> decode_params(const Command& command, const protocol::JsonValue& 
   TWEEND_TRY(protocol::decode(params, *command.params, decoded.get(), path));
   if (command.target != nullptr) {
     const EditTarget& target = command.target(decoded.get());
-    if (target.retry_key && (target.retry_key->empty() || target.retry_key->size() > 64)) {
-      return fail(ErrorCode::InvalidParams, fmt::format("expected 1 to 64 characters, found {}", target.retry_key->size()),
+    const auto characters = [](const std::string& text) {  // of UTF-8: bytes that begin one
+      return std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+    };
+    if (target.retry_key && (target.retry_key->empty() || characters(*target.retry_key) > 64)) {
+      return fail(ErrorCode::InvalidParams, fmt::format("expected 1 to 64 characters, found {}", characters(*target.retry_key)),
                   path + ".retry_key");
     }
   }

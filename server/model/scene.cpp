@@ -11,41 +11,53 @@ namespace {
 
 Bounds joined(const Bounds& a, const Bounds& b) noexcept { return {glm::min(a.min, b.min), glm::max(a.max, b.max)}; }
 
-bool may_overshoot(const Actor& actor, const Clip& clip) noexcept {
-  for (std::size_t i = 0; i < clip.keyframes.size(); ++i) {
-    if (clip.keyframes[i].easing) return true;
-    if (effective_interpolation(actor, clip, i) == animation::Interpolation::CatmullRom) return true;
+/// How far, in sizes of its keys' box, a blend may leave it: the sum of its negative weights, at most. Evenly spaced
+/// Catmull-Rom is doubled for uneven keys; an easing lies within the hull of its control points.
+float overshoot(animation::Interpolation mode, const std::optional<animation::CubicBezier>& easing) noexcept {
+  if (mode == animation::Interpolation::Step) return 0.0F;
+  const double lo = easing ? std::min({0.0, easing->y1, easing->y2}) : 0.0;
+  const double hi = easing ? std::max({1.0, easing->y1, easing->y2}) : 1.0;
+  if (mode == animation::Interpolation::Linear) return static_cast<float>(std::max(-lo, hi - 1.0));
+  double most = 0.0;
+  for (int i = 0; i <= 64; ++i) {
+    const double u = lo + (hi - lo) * i / 64.0, u2 = u * u, u3 = u2 * u;
+    const double weights[] = {(-u + 2 * u2 - u3) / 2, (2 - 5 * u2 + 3 * u3) / 2, (u + 4 * u2 - 3 * u3) / 2, (u3 - u2) / 2};
+    double negative = 0.0;
+    for (const double w : weights) negative += std::max(0.0, -w);
+    most = std::max(most, negative);
   }
-  return false;
+  return static_cast<float>(2.0 * most);
 }
 
-// Evenly spaced Catmull-Rom leaves the hull of its keys by at most an eighth of its size (the outer weights sum to
-// -1/8 at u = 1/2); uneven keys and easing can go further, hence twice that.
-Bounds widened(const Bounds& b) noexcept {
-  const glm::vec3 margin = 0.25F * (b.max - b.min);
-  return {b.min - margin, b.max + margin};
+Bounds clip_bounds(const Actor& actor, const Clip& clip) noexcept {
+  if (clip.keyframes.empty()) return actor.rest->bounds();
+  Bounds own = clip.keyframes.front().vertices->bounds();
+  float beyond = 0.0F;
+  for (std::size_t i = 0; i < clip.keyframes.size(); ++i) {
+    own = joined(own, clip.keyframes[i].vertices->bounds());
+    beyond = std::max(beyond, overshoot(effective_interpolation(actor, clip, i), clip.keyframes[i].easing));
+  }
+  const glm::vec3 margin = beyond * (own.max - own.min);
+  return {own.min - margin, own.max + margin};
 }
 
 Bounds model_bounds(const Actor& actor) noexcept {
-  std::optional<Bounds> all;
-  for (const ClipPtr& clip : actor.clips) {
-    if (clip->keyframes.empty()) continue;
-    Bounds own = clip->keyframes.front().vertices->bounds();
-    for (const Keyframe& k : clip->keyframes) own = joined(own, k.vertices->bounds());
-    if (may_overshoot(actor, *clip)) own = widened(own);
-    all = all ? joined(*all, own) : own;
-  }
-  return all.value_or(actor.rest->bounds());
+  Bounds all = clip_bounds(actor, *actor.clips.front());
+  for (const ClipPtr& clip : actor.clips) all = joined(all, clip_bounds(actor, *clip));
+  return all;
 }
 
 Bounds world_bounds(const Actor& actor) noexcept {
   Bounds model = model_bounds(actor);
-  if (actor.settings.spin_rad_s != 0.0) {  // what a full turn about the model's own Y axis sweeps
+  const Transform& transform = actor.settings.transform;
+  const glm::vec3 a = model.min * transform.scale, b = model.max * transform.scale;
+  model = {glm::min(a, b), glm::max(a, b)};
+  if (actor.settings.spin_rad_s != 0.0) {  // what a full turn about the Y axis sweeps, which comes after the scale
     const glm::vec3 corner = glm::max(glm::abs(model.min), glm::abs(model.max));
     const float reach = std::hypot(corner.x, corner.z);
     model = {{-reach, model.min.y, -reach}, {reach, model.max.y, reach}};
   }
-  const glm::mat4 matrix = world_from_model(actor.settings.transform, 0.0);
+  const glm::mat4 matrix = world_from_model({transform.translation, transform.rotation, glm::vec3(1.0F)}, 0.0);
   std::optional<Bounds> world;
   for (int i = 0; i < 8; ++i) {
     const glm::vec4 corner((i & 1) != 0 ? model.max.x : model.min.x, (i & 2) != 0 ? model.max.y : model.min.y,
