@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/stage/change.hpp"
@@ -17,6 +18,12 @@ class History {
     std::string method;
     std::vector<Change> changes;  ///< what takes it back (or does it again)
     std::shared_ptr<const Step> below;
+
+    Step(std::string m, std::vector<Change> c, std::shared_ptr<const Step> b)
+        : method(std::move(m)), changes(std::move(c)), below(std::move(b)) {}
+    Step(const Step&) = delete;
+    Step& operator=(const Step&) = delete;
+    ~Step();  ///< one step after the other: a long chain would not fit on the stack
   };
 
   [[nodiscard]] bool empty() const noexcept { return count_ == 0; }
