@@ -34,7 +34,8 @@ Connection::Connection(Tcp::socket socket, Framing framing, Metrics& metrics)
     : socket_(std::move(socket)),
       outbox_(framing, metrics),
       metrics_(metrics),
-      progress_(socket_.get_executor(), asio::steady_timer::time_point::max()) {}
+      progress_(socket_.get_executor(), asio::steady_timer::time_point::max()),
+      farewell_(socket_.get_executor()) {}
 
 void Connection::begin(const commands::Services& services, Post to_network, commands::Role role) {
   conversation_ = std::make_shared<commands::Conversation>(services, std::move(to_network), shared_from_this(), role);
@@ -60,6 +61,16 @@ asio::awaitable<void> Connection::finish(std::chrono::seconds at_most) {
   close();
 }
 
+void Connection::end_soon(std::chrono::seconds at_most) {
+  boost::system::error_code ignored;
+  socket_.shutdown(Tcp::socket::shutdown_receive, ignored);  // ends the session's reading
+  // A session that waits for its client to take answers reads nothing and would not notice.
+  farewell_.expires_after(at_most);
+  farewell_.async_wait([self = shared_from_this()](const boost::system::error_code& error) {
+    if (!error) self->close();
+  });
+}
+
 void Connection::close() {
   if (!open_) return;
   open_ = false;
@@ -68,6 +79,7 @@ void Connection::close() {
   boost::system::error_code ignored;
   socket_.shutdown(Tcp::socket::shutdown_send, ignored);
   socket_.cancel(ignored);
+  farewell_.cancel();
   progress_.cancel();
 }
 

@@ -3,6 +3,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
 #include <memory>
 #include <string>
 
@@ -30,6 +31,8 @@ class Connection final : public commands::Peer, public std::enable_shared_from_t
   boost::asio::awaitable<void> ready_for_more();
   /// Answers what has been asked and writes all of it, for at most so long; then closes.
   boost::asio::awaitable<void> finish(std::chrono::seconds at_most);
+  /// The server stops: nothing more is read than has arrived; whoever does not take its answers within `at_most` loses them.
+  void end_soon(std::chrono::seconds at_most);
   /// Framed bytes from elsewhere (Beast's control frames).
   void push_raw(std::string bytes);
   /// Ends it now. What is under way ends unheard.
@@ -55,6 +58,7 @@ class Connection final : public commands::Peer, public std::enable_shared_from_t
   Metrics& metrics_;
   std::shared_ptr<commands::Conversation> conversation_;
   boost::asio::steady_timer progress_;  ///< never expires: cancelling it wakes whoever waits for a change
+  boost::asio::steady_timer farewell_;  ///< runs while the server stops
   bool open_ = true;
   bool writing_ = false;
 };

@@ -92,7 +92,8 @@ asio::awaitable<bool> serve_requests(beast::tcp_stream& stream, beast::flat_buff
     } else if (!co_await write(stream, co_await route(request, context), metrics)) {
       co_return false;
     }
-    if (!request.keep_alive() || context.stopping) co_return false;
+    // While the server stops, reading ends by itself behind the requests that have arrived.
+    if (!request.keep_alive()) co_return false;
   }
 }
 

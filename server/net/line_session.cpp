@@ -96,10 +96,7 @@ asio::awaitable<void> linger(std::shared_ptr<Connection> connection) {
 asio::awaitable<void> run_line_session(Tcp::socket socket, std::string received, SessionContext& context) {
   const auto connection = std::make_shared<Connection>(std::move(socket), Framing::Line, context.services.metrics);
   connection->begin(context.services, context.to_network, kEveryonesRole);
-  const Registered registered(context, [&connection] {
-    boost::system::error_code ignored;
-    connection->socket().shutdown(Tcp::socket::shutdown_receive, ignored);  // ends the reading below
-  });
+  const Registered registered(context, [&connection] { connection->end_soon(kFarewell); });
   LineReader reader(*connection, context.services.limits);
   std::string buffer = std::move(received);
   bool refused = false;

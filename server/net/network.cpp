@@ -72,7 +72,10 @@ asio::awaitable<void> run_connection(Tcp::socket accepted, SessionContext& conte
   boost::beast::tcp_stream stream(std::move(accepted));
   std::string first;
   {
-    const Registered registered(context, [&stream] { stream.cancel(); });
+    const Registered registered(context, [&stream] {
+      boost::system::error_code ignored;
+      stream.socket().shutdown(Tcp::socket::shutdown_receive, ignored);  // what has arrived is still read
+    });
     first = co_await read_first(stream);
   }
   Tcp::socket socket = stream.release_socket();
@@ -145,7 +148,7 @@ struct Network::Impl {
     for (SessionContext::Ender* session : sessions) {
       if (context->sessions.contains(session)) session->end_soon();
     }
-    const auto until = std::chrono::steady_clock::now() + kFarewell + std::chrono::milliseconds(500);
+    const auto until = std::chrono::steady_clock::now() + 2 * kFarewell;  // sessions end by themselves well before
     asio::steady_timer pause(io);
     while (context->services.metrics.connections.load() > 0 && std::chrono::steady_clock::now() < until) {
       pause.expires_after(std::chrono::milliseconds(5));

@@ -29,11 +29,12 @@ struct SessionContext {
   std::set<Ender*> sessions;
 };
 
-/// While it lives, the session is told when the server stops.
+/// While it lives, the session is told when the server stops; at once, if it is stopping already.
 class Registered : public SessionContext::Ender {
  public:
   Registered(SessionContext& context, std::function<void()> end) : context_(context), end_(std::move(end)) {
     context_.sessions.insert(this);
+    if (context_.stopping) end_();
   }
   ~Registered() override { context_.sessions.erase(this); }
   Registered(const Registered&) = delete;

@@ -48,8 +48,7 @@ asio::awaitable<void> run_websocket_session(Tcp::socket socket, http::request<ht
   bool stopping = false;
   const Registered registered(context, [&] {
     stopping = true;
-    boost::system::error_code ignored;
-    connection->socket().shutdown(Tcp::socket::shutdown_receive, ignored);
+    connection->end_soon(kFarewell);
   });
 
   constexpr auto kAwait = asio::as_tuple(asio::use_awaitable);
