@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Makes the demo asset `barb`: a spike that bends towards the ground and back. Run it to rewrite the folder barb/.
 
-The recipe: a cube of 2 m whose top face is extruded, so that connected cubes stand one on top of each other; the rings at 0, 2, 4
-and 6 m of height are scaled 1, 0.75, 0.5 and 0, the topmost being four vertices in one tip. A chain of three bones stands
-in it; the lowest stays put, the middle one (from 2 m) and the top one (from 4 m) bend towards +X.
+The recipe: a cube of 2 m whose top face is extruded, so that connected cubes stand one on top of each other; the rings
+at 0, 2, 4 and 6 m of height are scaled 1, 0.75, 0.5 and 0, the topmost being four vertices in one tip. A chain of three
+bones stands in it; the lowest stays put, the middle one (from 2 m) and the top one (from 4 m) bend towards +X.
 
 Beyond the recipe, each cube has four rings instead of one and each edge of a ring two halves, so that the bends are
 round and the texture is not sheared. The four sides are shaded smoothly along the spike and keep crisp edges.
@@ -15,7 +15,7 @@ in the lower three quarters of the picture, the bottom above them, all at the sa
 import math
 import os
 
-from mesh import Mesh, mix, smoothstep
+from mesh import Mesh, lerp, mix, smoothstep
 from obj_writer import write_asset
 
 NAME = "barb"
@@ -36,7 +36,7 @@ TEXTURE_M = 8.0  # the picture's width and height
 
 def ring_scale(height_m):
     cube = min(2, int(height_m / CUBE_M))
-    return mix(RING_SCALES[cube:cube + 1], RING_SCALES[cube + 1:cube + 2], height_m / CUBE_M - cube)[0]
+    return lerp(RING_SCALES[cube], RING_SCALES[cube + 1], height_m / CUBE_M - cube)
 
 
 def build_mesh():

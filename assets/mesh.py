@@ -105,9 +105,14 @@ def unit(a):
     return scale(a, 1 / length)
 
 
+def lerp(a, b, weight):
+    """From a (weight 0) to b (weight 1)."""
+    return a + (b - a) * weight
+
+
 def mix(a, b, weight):
-    """Componentwise from a (weight 0) to b (weight 1); points and colours alike."""
-    return tuple(x + (y - x) * weight for x, y in zip(a, b))
+    """As lerp, componentwise; points and colours alike."""
+    return tuple(lerp(x, y, weight) for x, y in zip(a, b))
 
 
 def smoothstep(low, high, x):

@@ -4,8 +4,8 @@ import random
 
 from mesh import mix, smoothstep
 
-BODY_BAND = ((0.51,), (0.99,))  # v from the bottom of the body to its top; u goes once around it
-ARM_BAND = ((0.20,), (0.49,))  # v once around an arm, its underside in the middle; u from the body to the tip
+BODY_BAND = (0.51, 0.99)  # v from the bottom of the body to its top; u goes once around it
+ARM_BAND = (0.20, 0.49)  # v once around an arm, its underside in the middle; u from the body to the tip
 EYE_DISC = (0.10, 0.09, 0.08)  # the middle's u and v, and the radius: a ball flattened around its pupil
 ARM_LENGTH_M = 1.75
 
@@ -28,18 +28,19 @@ def texture(size=512):
 
 
 def body_colour(u, v):
-    height = (v - BODY_BAND[0][0]) / (BODY_BAND[1][0] - BODY_BAND[0][0])
+    height = (v - BODY_BAND[0]) / (BODY_BAND[1] - BODY_BAND[0])
     colour = mix(CREAM, CORAL, smoothstep(0.05, 0.22, height))
     return mix(colour, PLUM, 0.8 * smoothstep(0.45, 1.0, height))
 
 
 def arm_colour(u, v):
     """Coral at the body as the body is there, plum towards the tip; cream below, with two rows of suckers."""
-    around = (v - ARM_BAND[0][0]) / (ARM_BAND[1][0] - ARM_BAND[0][0])
+    around = (v - ARM_BAND[0]) / (ARM_BAND[1] - ARM_BAND[0])
     below = 1 - smoothstep(0.17, 0.25, abs(around - 0.5))
     back = mix(CORAL, PLUM, smoothstep(0.15, 1.0, u))
     colour = mix(back, mix(CREAM, APRICOT, u), below)
     radius = max(arm_radius(min(u, 0.97)), 0.01)
+    # Round on the arm, not in the picture: distances are metres on its skin.
     off_m = abs(around - 0.5) * 2 * math.pi * radius - 0.47 * radius  # from the middle of the sucker's row
     along_m = nearest_sucker(u, around > 0.5) * ARM_LENGTH_M
     out = math.hypot(off_m, along_m) / (0.34 * radius)
@@ -48,7 +49,7 @@ def arm_colour(u, v):
     return mix(colour, (1.0, 0.84, 0.74), 1 - smoothstep(0.50, 0.68, out))
 
 
-SUCKERS = [0.06]
+SUCKERS = [0.06]  # at which parts of the arm's length; closer where the arm is thinner
 while SUCKERS[-1] < 0.93:
     SUCKERS.append(SUCKERS[-1] + 0.85 * arm_radius(SUCKERS[-1]) / ARM_LENGTH_M)
 
@@ -78,12 +79,12 @@ def paint_spots(rows, size):
         stamp(rows, size, dice.random(), 0.60 + 0.30 * dice.random(), 0.004 + 0.004 * dice.random(), PLUM, 0.5)
     for _ in range(60):
         around = 0.055 * dice.random()
-        v = ARM_BAND[0][0] + around if dice.random() < 0.5 else ARM_BAND[1][0] - around
+        v = ARM_BAND[0] + around if dice.random() < 0.5 else ARM_BAND[1] - around
         stamp(rows, size, 0.12 + 0.75 * dice.random(), v, 0.005 + 0.008 * dice.random(), APRICOT, 0.5)
 
 
 def stamp(rows, size, u, v, radius, colour, strength):
-    """A soft dot; it wraps around in u, and stays in its half of the picture."""
+    """A soft dot; it wraps around in u."""
     column, row, reach = u * size, (1 - v) * size, radius * size
     for y in range(int(row - reach), int(row + reach) + 2):
         for x in range(int(column - reach), int(column + reach) + 2):
