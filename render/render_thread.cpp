@@ -20,6 +20,10 @@ constexpr GLuint64 kPatience = 1'000'000;
 
 constexpr int kSamplesOnGpu = 4;
 
+Result<std::unique_ptr<EglContext>> switched_off() {
+  return fail(ErrorCode::Unavailable, "expected a server that draws, found one started with --no-render");
+}
+
 int supported_samples(int wanted, bool software) {
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
@@ -102,7 +106,7 @@ class RenderThread::Loop {
   std::deque<InFlight> in_flight_;
 };
 
-RenderThread::RenderThread(RenderOptions options) {
+RenderThread::RenderThread(RenderOptions options) : wanted_(!options.off) {
   std::promise<void> opened;
   std::future<void> ready = opened.get_future();
   thread_ = std::thread([this, options, promise = std::move(opened)]() mutable { run(options, std::move(promise)); });
@@ -134,7 +138,7 @@ void RenderThread::stop() {
 }
 
 void RenderThread::run(RenderOptions options, std::promise<void> opened) {
-  Result<std::unique_ptr<EglContext>> context = EglContext::open(&attempts_);
+  Result<std::unique_ptr<EglContext>> context = options.off ? switched_off() : EglContext::open(&attempts_);
   std::unique_ptr<Loop> loop;
   if (context) {
     Result<std::unique_ptr<Renderer>> renderer = Renderer::make(options.gpu_bytes);

@@ -28,6 +28,7 @@ class FrameJob {
 };
 
 struct RenderOptions {
+  bool off = false;                               ///< draw nothing: every job is refused
   int samples = 0;                                ///< a pixel; 0: 4 on a GPU, 1 on a software device
   std::size_t gpu_bytes = std::size_t{1} << 30U;  ///< for meshes and keyframes
 };
@@ -45,6 +46,8 @@ class RenderThread {
 
   /// What draws ("llvmpipe …"), or why nothing does.
   [[nodiscard]] const Result<std::string>& device() const noexcept { return device_; }
+  /// Whether there should be one.
+  [[nodiscard]] bool wanted() const noexcept { return wanted_; }
   [[nodiscard]] const std::vector<DeviceAttempt>& attempts() const noexcept { return attempts_; }
 
   /// Any thread. The job is kept until it has been answered; it must not be submitted again before.
@@ -61,6 +64,7 @@ class RenderThread {
   class Loop;
   void run(RenderOptions options, std::promise<void> opened);
 
+  const bool wanted_;
   Result<std::string> device_{Error{}};
   std::vector<DeviceAttempt> attempts_;
   std::mutex mutex_;

@@ -29,7 +29,7 @@ LAYERS: dict[str, tuple[str, ...]] = {
     "stage": ("store", "model", "animation", "base"),
     "streams": ("render", "stage", "protocol", "model", "animation", "base"),
     "commands": ("streams", "render", "stage", "store", "assets", "protocol", "model", "animation", "base"),
-    "net": ("commands", "streams", "protocol", "base"),
+    "net": ("commands", "streams", "render", "protocol", "base"),
     "app": ("net", "commands", "streams", "stage", "store", "assets", "render", "protocol", "model", "animation", "base"),
     "cli": ("protocol", "base"),
 }
