@@ -47,6 +47,7 @@ void add_limit_options(CLI::App& serve, Limits& l) {
   add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
   add("--max-undo", l.undo_steps, "Steps that can be undone");
   add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");
+  add("--max-texture-pixels", l.texture_pixels, "Pixels of a texture");
 }
 
 void print_commands() {
