@@ -17,9 +17,6 @@
 namespace tweend::assets {
 namespace {
 
-// Keeps every count within the 32 bits of an index: a corner takes two bytes at least.
-constexpr std::size_t kMaxTextBytes = std::size_t{1} << 31U;
-
 // Known, and of no concern to a polygon mesh: grouping and materials, display, lines and points, free-form geometry.
 constexpr std::string_view kSkipped[] = {
     "o",        "g",          "s",         "mg",   "usemtl", "mtllib", "usemap", "maplib", "lod",  "bevel", "c_interp",
@@ -185,23 +182,10 @@ class Reader {
   ObjFile file_;
 };
 
-/// The line of the text's first NUL byte, if there is one: then it's no text at all, whatever it may look like.
-std::optional<std::ptrdiff_t> line_of_nul(std::string_view text) {
-  const std::size_t position = text.find('\0');
-  if (position == std::string_view::npos) return std::nullopt;
-  const std::string_view before = text.substr(0, position);
-  return std::count(before.begin(), before.end(), '\n') + 1;
-}
-
 }  // namespace
 
 Result<ObjFile> read_obj(std::string_view text, std::string name, const Limits& limits) {
-  if (text.size() > kMaxTextBytes) {
-    return fail(ErrorCode::Limit, fmt::format("{}: expected at most {} bytes, found {}", name, kMaxTextBytes, text.size()));
-  }
-  if (const auto line = line_of_nul(text)) {
-    return fail(ErrorCode::BadAsset, fmt::format("{}:{}: expected text, found a NUL byte: this is a binary file", name, *line));
-  }
+  TWEEND_TRY(check_text(text, name));
   return Reader(text, std::move(name), limits).read();
 }
 
