@@ -52,6 +52,7 @@ void add_limit_options(CLI::App& serve, Limits& l) {
   add("--max-undo", l.undo_steps, "Steps that can be undone");
   add("--max-frame-side", l.frame_side, "Pixels of a picture's width, and of its height");
   add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");
+  add("--max-texture-pixels", l.texture_pixels, "Pixels of a texture");
 }
 
 void print_commands() {
