@@ -76,7 +76,7 @@ export class ConnectionLost extends Error {
  */
 export function backoff_ms(failures, random) {
   const plain = Math.min(kFirstRetry_ms * 2 ** (failures - 1), kLongestRetry_ms);
-  return plain * (0.8 + 0.4 * random);
+  return Math.round(plain * (0.8 + 0.4 * random));
 }
 
 /** @type {Timers} */

@@ -8,11 +8,15 @@ export class FrameMeter {
   /** @type {{at_ms: number, age_ms: number | null}[]} */
   #frames = [];
 
+  /** Whether there has been any. */
+  ever = false;
+
   /**
    * @param {number} at_ms
    * @param {number | null} age_ms  null: the server's clock is not known yet
    */
   add(at_ms, age_ms) {
+    this.ever = true;
     this.#frames.push({ at_ms, age_ms });
     this.#forget(at_ms);
   }

@@ -44,7 +44,9 @@ export class FrameStream {
   /** @type {{stream: number, size: Size, camera: StreamCamera | null} | null} what the server has */
   #open = null;
   #busy = false;
-  #failed = false;
+  /** Counts what was wanted; what failed is not tried again until something else is. */
+  #wish = 0;
+  #failed_wish = -1;
 
   /** @type {Listeners<Packet>} */
   packets = new Listeners();
@@ -66,7 +68,7 @@ export class FrameStream {
     connection.events.add(({ method, params }) => {
       if (method !== "stream.ended" || params.stream !== this.#open?.stream) return;
       this.#open = null;
-      this.#fail(new Error(`the picture has ended: ${params.reason}`));
+      this.#fail(this.#wish, new Error(`the picture has ended: ${params.reason}`));
     });
   }
 
@@ -89,31 +91,35 @@ export class FrameStream {
   }
 
   #wanted() {
-    this.#failed = false;
+    this.#wish += 1;
     if (!this.#busy) void this.#reconcile();
   }
 
-  /** @param {unknown} error */
-  #fail(error) {
-    this.#failed = true; // until something else is wanted: the same would be answered the same
+  /**
+   * @param {number} wish
+   * @param {unknown} error
+   */
+  #fail(wish, error) {
+    this.#failed_wish = wish; // asked again, the same would be answered the same
     this.#report(error);
   }
 
   async #reconcile() {
     this.#busy = true;
-    try {
-      for (let step = this.#next_step(); step; step = this.#next_step()) await step();
-    } catch (error) {
-      this.#fail(error);
+    for (let step = this.#next_step(); step; step = this.#next_step()) {
+      const wish = this.#wish;
+      try {
+        await step();
+      } catch (error) {
+        this.#fail(wish, error);
+      }
     }
     this.#busy = false;
-    // What came while the failure was on its way has been answered by nobody.
-    if (!this.#failed && this.#next_step()) void this.#reconcile();
   }
 
   /** @returns {(() => Promise<void>) | null} */
   #next_step() {
-    if (this.#failed || this.#connection.state.phase !== "open") return null;
+    if (this.#failed_wish === this.#wish || this.#connection.state.phase !== "open") return null;
     const [open, size] = [this.#open, this.#size];
     if (!this.#watched || !size) return open && (() => this.#close(open.stream));
     if (!open || open.size.width !== size.width || open.size.height !== size.height) return () => this.#replace(size);

@@ -34,7 +34,7 @@ export class FrameView {
   constructor(canvas, report) {
     this.#canvas = canvas;
     this.#report = report;
-    const context = canvas.getContext("2d", { alpha: false });
+    const context = canvas.getContext("2d");
     if (!context) throw new Error("expected a canvas that can be drawn on, found none; is there enough memory?");
     this.#context = context;
   }

@@ -78,6 +78,8 @@ HttpResponse answer_file(const HttpRequest& request, const WebFile& file) {
   const WebAnswer answer = answer_web(file, request[http::field::if_none_match]);
   HttpResponse response = http_answer(request, answer.status, answer.content_type, std::string(answer.body));
   for (const auto& [name, value] : answer.headers) response.set(name, value);
+  // Where it says anything, the length is that of the file (RFC 9110, 15.4.5).
+  if (answer.status == 304) response.erase(http::field::content_length);
   return response;
 }
 

@@ -15,9 +15,9 @@ export function actor_detail({ clips, vertices }) {
   const keyframes = clips.reduce((sum, c) => sum + c.keyframes, 0);
   /** @param {number} n @param {string} what */
   const count = (n, what) => `${n.toLocaleString("en")} ${what}${n === 1 ? "" : "s"}`;
-  return [clips.length > 1 ? count(clips.length, "clip") : "", count(keyframes, "keyframe"), `${vertices.toLocaleString("en")} vertices`]
-    .filter((part) => part)
-    .join(" · ");
+  const mesh = vertices === 1 ? "1 vertex" : `${vertices.toLocaleString("en")} vertices`;
+  const parts = clips.length > 1 ? [count(clips.length, "clip")] : [];
+  return [...parts, count(keyframes, "keyframe"), mesh].join(" · ");
 }
 
 /**

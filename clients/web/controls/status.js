@@ -75,7 +75,7 @@ export function show_meter(meter, canvas) {
   setInterval(() => {
     const { per_second, age_ms } = meter.read(performance.now());
     if (per_second === 0) {
-      set_text(node, "still"); // nothing changes, so nothing is sent
+      set_text(node, meter.ever ? "still" : "no picture"); // nothing changes, so nothing is sent
       return;
     }
     const age = age_ms === null ? "" : ` · ${age_ms.toFixed(age_ms < 10 ? 1 : 0)} ms old`;
