@@ -4,8 +4,6 @@ find_package(Boost 1.81 REQUIRED)            # Asio and Beast, header-only
 find_package(spdlog REQUIRED)
 find_package(hwy REQUIRED)
 find_package(PkgConfig REQUIRED)
-pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
-pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)          # EGL and OpenGL, found at run time
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)

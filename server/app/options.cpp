@@ -14,6 +14,7 @@ void add_serve_options(CLI::App& serve, ServeOptions& o) {
       ->capture_default_str();
   serve.add_option("--port-file", o.port_file, "Write the port here once it is open")->type_name("FILE");
   serve.add_option("--data", o.data, "The data folder; a folder serves one server")->type_name("DIR");
+  serve.add_option("--web", o.web, "The page at /; by default the one that was installed with this program")->type_name("DIR");
   serve.add_option("--assets", o.assets, "A folder of assets; may be given several times")
       ->type_name("DIR")
       ->allow_extra_args(false);

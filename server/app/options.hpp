@@ -14,6 +14,7 @@ struct ServeOptions {
   std::string listen = "127.0.0.1:8933";
   std::string port_file;
   std::string data;
+  std::string web;
   std::vector<std::string> assets;
   std::vector<std::string> load;
   std::vector<std::string> allowed_origins;

@@ -20,6 +20,7 @@
 #include <utility>
 
 #include "server/app/loader.hpp"
+#include "server/app/page.hpp"
 #include "server/base/log.hpp"
 #include "server/store/memory_store.hpp"
 
@@ -129,7 +130,8 @@ class Server {
     staged_ = true;
     for (const std::string& asset : options_.load) TWEEND_TRY(load_asset(services_, asset));
     if (options_.play) TWEEND_TRY(play_all(services_));
-    TWEEND_TRY(network_.start({endpoint, options_.allowed_origins}, services_));
+    TWEEND_ASSIGN(net::WebFiles page, load_page(options_.web));
+    TWEEND_TRY(network_.start({endpoint, options_.allowed_origins, std::move(page)}, services_));
     return write_port_file(options_.port_file, network_.endpoint().port);
   }
 

@@ -76,8 +76,16 @@ std::string welcome() {
       TWEEND_VERSION);
 }
 
+HttpResponse answer_file(const HttpRequest& request, const WebFile& file) {
+  const WebAnswer answer = answer_web(file, request[http::field::if_none_match]);
+  HttpResponse response = http_answer(request, answer.status, answer.content_type, std::string(answer.body));
+  for (const auto& [name, value] : answer.headers) response.set(name, value);
+  // Where it says anything, the length is that of the file (RFC 9110, 15.4.5).
+  if (answer.status == 304) response.erase(http::field::content_length);
+  return response;
+}
+
 HttpResponse answer_get(const HttpRequest& request, std::string_view path, SessionContext& context) {
-  if (path == "/") return http_answer(request, 200, kText, welcome());
   if (path == "/healthz") return http_answer(request, 200, kText, "ok\n");
   if (path == "/readyz") {
     // Documents are loaded before the port opens; while stopping, others should be asked.
@@ -91,6 +99,8 @@ HttpResponse answer_get(const HttpRequest& request, std::string_view path, Sessi
     return http_answer(request, 200, "text/plain; version=0.0.4; charset=utf-8", context.services.metrics.prometheus_text());
   }
   if (path == "/openrpc.json") return http_answer(request, 200, kJson, *commands::openrpc_document());
+  if (const WebFile* file = context.web.find(path)) return answer_file(request, *file);
+  if (path == "/") return http_answer(request, 200, kText, welcome());
   return http_answer(request, 404, kText,
                      fmt::format("expected /, /healthz, /readyz, /metrics, /openrpc.json, /rpc, /ws, /scenes/SCENE/frame.png, "
                                  "frame.jpg or stream.mjpg, found {}\n",

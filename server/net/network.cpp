@@ -169,6 +169,7 @@ const Endpoint& Network::endpoint() const noexcept { return impl_->endpoint; }
 
 Status Network::start(const NetworkOptions& options, const commands::Services& services) {
   impl_->context.reset(new SessionContext{services, post(), options.allowed_origins, false, {}});
+  impl_->context->web = options.web;
   const Tcp::endpoint wanted(asio::ip::make_address(options.listen.address), options.listen.port);
   const auto failed = [&](const boost::system::error_code& error) {
     return fail(ErrorCode::Unavailable,

@@ -8,6 +8,7 @@
 #include "server/base/result.hpp"
 #include "server/base/worker_pool.hpp"
 #include "server/commands/services.hpp"
+#include "server/net/web_files.hpp"
 
 namespace tweend::net {
 
@@ -23,6 +24,7 @@ struct Endpoint {
 struct NetworkOptions {
   Endpoint listen{"127.0.0.1", 8933};
   std::vector<std::string> allowed_origins;
+  WebFiles web = {};  ///< the page at /; empty: a welcome in plain text
 };
 
 /// The port and everything that comes in by it, on one thread: connections are judged by their first bytes and become line

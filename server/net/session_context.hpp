@@ -11,6 +11,7 @@
 #include "server/base/worker_pool.hpp"
 #include "server/commands/command.hpp"
 #include "server/commands/services.hpp"
+#include "server/net/web_files.hpp"
 
 namespace tweend::net {
 
@@ -27,6 +28,8 @@ struct SessionContext {
     virtual void end_soon() = 0;
   };
   std::set<Ender*> sessions;
+
+  WebFiles web = {};
 };
 
 /// While it lives, the session is told when the server stops; at once, if it is stopping already.

@@ -1,0 +1,114 @@
+import assert from "node:assert/strict";
+import { describe, test } from "node:test";
+import { ConnectionLost, RpcError } from "../../clients/web/connection.js";
+import { actor_detail } from "../../clients/web/controls/actor_list.js";
+import { error_text } from "../../clients/web/controls/messages.js";
+import { interpolation_choice } from "../../clients/web/controls/playback_options.js";
+import { belongs_to } from "../../clients/web/controls/shortcuts.js";
+import { connection_words } from "../../clients/web/controls/status.js";
+import { FrameMeter } from "../../clients/web/frame_meter.js";
+import { ViewCamera } from "../../clients/web/view_camera.js";
+
+describe("keys belong to", () => {
+  const owner = (tagName, type) => ({ tagName, type });
+  test("whoever types", () => {
+    assert.ok(belongs_to(owner("INPUT", "number"), "ArrowLeft"));
+    assert.ok(belongs_to(owner("SELECT"), "s"));
+    assert.ok(belongs_to(owner("INPUT", "range"), "Home"));
+  });
+  test("a button, if they press it", () => {
+    assert.ok(belongs_to(owner("BUTTON"), " "));
+    assert.ok(!belongs_to(owner("BUTTON"), "ArrowLeft"));
+    assert.ok(belongs_to(owner("INPUT", "radio"), "ArrowDown"));
+    assert.ok(!belongs_to(owner("INPUT", "radio"), "f"));
+  });
+  test("us, on the page and on the line of time", () => {
+    assert.ok(!belongs_to(owner("BODY"), " "));
+    assert.ok(!belongs_to({ tagName: "INPUT", type: "range", id: "scrubber" }, "ArrowLeft"));
+  });
+});
+
+describe("words", () => {
+  test("of a refusal name the method and the parameter", () => {
+    const error = new RpcError("playback.set", { code: -32602, message: "x", data: { path: "params.speed", message: "expected y" } });
+    assert.equal(error_text(error), "playback.set: expected y (params.speed)");
+    assert.equal(error_text(new RpcError("a.b", { code: -32601, message: "no such method" })), "a.b: no such method");
+  });
+  test("of a lost connection are the connection's", () => assert.equal(error_text(new ConnectionLost("x")), ""));
+  test("of anything else are its own", () => {
+    assert.equal(error_text(new Error("oh")), "oh");
+    assert.equal(error_text("oh"), "oh");
+  });
+  test("of the connection say what is being done about it", () => {
+    const words = (phase) => connection_words({ phase, reason: "it fell", retry_ms: 1500, hello: null });
+    assert.equal(words("open").note, "");
+    assert.match(words("waiting").note, /it fell.*1\.5 s/);
+    assert.match(words("connecting").note, /it fell.*now/);
+    assert.match(words("refused").note, /refuses.*it fell/);
+    assert.match(words("stopped").note, /closed/);
+    assert.match(connection_words({ phase: "connecting", reason: "", retry_ms: 0, hello: null }).note, /^Connecting/);
+  });
+  test("of an actor count what it has", () => {
+    const clip = (keyframes) => ({ clip: "c", type: "vertex", keyframes, duration: 1, closed: false });
+    assert.equal(actor_detail({ clips: [clip(1)], vertices: 1234 }), "1 keyframe · 1,234 vertices");
+    assert.equal(actor_detail({ clips: [clip(2), clip(3)], vertices: 1 }), "2 clips · 5 keyframes · 1 vertex");
+  });
+});
+
+test("the blend shown is that of all concerned, or mixed", () => {
+  const state = (selected, ...modes) => ({ selected, actors: modes.map((interpolation, i) => ({ actor: "ab"[i], interpolation })) });
+  assert.equal(interpolation_choice(state(null)), "");
+  assert.equal(interpolation_choice(state(null, null, null)), "");
+  assert.equal(interpolation_choice(state(null, "step", null)), "mixed");
+  assert.equal(interpolation_choice(state("a", "step", null)), "step");
+});
+
+describe("the meter", () => {
+  test("has seen nothing at first", () => {
+    const meter = new FrameMeter();
+    assert.deepEqual(meter.read(0), { per_second: 0, age_ms: null });
+    assert.equal(meter.ever, false);
+  });
+  test("counts the last second, and tells the middle age", () => {
+    const meter = new FrameMeter();
+    [0, 500, 600, 700].forEach((at, i) => meter.add(at, [1, 90, 5, 7][i]));
+    assert.deepEqual(meter.read(900), { per_second: 4, age_ms: 7 });
+    assert.deepEqual(meter.read(1100), { per_second: 3, age_ms: 7 });
+    assert.deepEqual(meter.read(9999), { per_second: 0, age_ms: null });
+    assert.equal(meter.ever, true);
+  });
+  test("does without ages that nobody knows", () => {
+    const meter = new FrameMeter();
+    meter.add(0, null);
+    assert.deepEqual(meter.read(1), { per_second: 1, age_ms: null });
+  });
+});
+
+describe("the page's camera", () => {
+  const kScene = { eye: [0, 0, 10], target: [0, 0, 0], fov_y: 1, near: 0.1, far: 100 };
+  const make = () => {
+    const camera = new ViewCamera();
+    const told = [];
+    camera.changes.add((own) => told.push(own));
+    return { camera, told };
+  };
+  test("is the scene's until somebody turns it", () => {
+    const { camera, told } = make();
+    camera.turn(1, 1, 100); // nothing is shown yet
+    camera.follow(kScene);
+    assert.equal(camera.stream_camera, null);
+    camera.zoom(2);
+    camera.follow({ ...kScene, eye: [0, 0, 50] });
+    camera.zoom(2);
+    assert.deepEqual(told.map((own) => own.orbit.distance), [20, 40]);
+  });
+  test("goes back to the scene's, once", () => {
+    const { camera, told } = make();
+    camera.follow(kScene);
+    camera.reset();
+    camera.turn(1, 0, 100);
+    camera.reset();
+    camera.reset();
+    assert.deepEqual(told.slice(1), [null]);
+  });
+});
