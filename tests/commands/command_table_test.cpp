@@ -45,6 +45,7 @@ TEST(CommandTable, EveryRowHasTheHandlerOfItsShape) {
     const bool edit = c.shape == Shape::Edit || c.shape == Shape::HeavyEdit;
     const bool query = c.shape == Shape::Ping || c.shape == Shape::Query || c.shape == Shape::WorkerQuery;
     EXPECT_EQ(c.query != nullptr, query) << c.name;
+    EXPECT_EQ(c.async_query != nullptr, c.shape == Shape::AsyncQuery) << c.name;
     EXPECT_EQ(c.edit != nullptr, edit) << c.name;
     EXPECT_EQ(c.scene_edit != nullptr, c.shape == Shape::SceneEdit) << c.name;
     EXPECT_EQ(c.players != nullptr, c.shape == Shape::Players) << c.name;

@@ -15,8 +15,9 @@ using streams::PacketPtr;
 
 PacketPtr make_packet(std::uint32_t sequence, std::uint8_t flags = protocol::kFlagKey, std::uint64_t source = 1) {
   static const auto pool = std::make_shared<PacketPool>();
-  const auto packet = pool->take(6);
-  for (std::size_t i = 0; i < 6; ++i) packet->payload[i] = static_cast<float>(i);
+  const auto packet = pool->take();
+  const auto numbers = packet->payload.resize_floats(6);
+  for (std::size_t i = 0; i < 6; ++i) numbers[i] = static_cast<float>(i);
   packet->source = source;
   packet->header.sequence = sequence;
   packet->header.flags = flags;
@@ -167,7 +168,7 @@ TEST_F(OutboxTest, PayloadsAreSharedAndNeverCopied) {
   line.offer(1, packet);
   const auto buffers = line.take();
   ASSERT_EQ(buffers.size(), 2U);
-  EXPECT_EQ(buffers[1].data(), packet->payload.data());
+  EXPECT_EQ(buffers[1].data(), packet->payload.bytes().data());
 }
 
 TEST_F(OutboxTest, AWriteGathersAtMostThirtyTwoMessages) {
@@ -236,7 +237,8 @@ TEST_F(OutboxTest, LargePacketsHaveTheLengthsOfTheStandardToo) {
   const auto pool = std::make_shared<PacketPool>();
   // 40 + 4 n bytes: the last of 7 bits, the first and last of 16, the first of 64.
   for (const std::size_t floats : {20U, 21U, 22U, 16373U, 16374U, 16375U}) {
-    const auto packet = pool->take(floats);
+    const auto packet = pool->take();
+    packet->payload.resize_floats(floats);
     packet->source = 1;
     packet->header.payload_bytes = static_cast<std::uint32_t>(4 * floats);
     const std::size_t size = 40 + 4 * floats;
@@ -261,7 +263,7 @@ TEST_F(OutboxTest, ManyReadersShareOnePayload) {
   const auto mine = line.take();
   const auto theirs = other.take();
   EXPECT_EQ(mine[1].data(), theirs[1].data());
-  EXPECT_EQ(mine[1].data(), packet->payload.data());
+  EXPECT_EQ(mine[1].data(), packet->payload.bytes().data());
   EXPECT_NE(std::memcmp(mine[0].data(), theirs[0].data(), 8), 0) << "headers are each reader's own";
 }
 
@@ -334,8 +336,9 @@ TEST_F(OutboxTest, IsNotEmptyWhileSomethingIsBeingWritten) {
 
 TEST_F(OutboxTest, PacketsCongestNothing) {
   const auto pool = std::make_shared<PacketPool>();
-  const auto packet = pool->take(Outbox::kOverflowBytes / 2);
-  packet->header.payload_bytes = static_cast<std::uint32_t>(packet->payload_bytes().size());
+  const auto packet = pool->take();
+  packet->header.payload_bytes =
+      static_cast<std::uint32_t>(packet->payload.resize_floats(Outbox::kOverflowBytes / 2).size_bytes());
   line.offer(1, packet);
   EXPECT_FALSE(line.congested());
   EXPECT_FALSE(line.overflowed());

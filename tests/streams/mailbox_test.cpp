@@ -28,7 +28,7 @@ class NotingSink final : public PacketSink {
 
 struct Letters {
   PacketPtr packet(std::uint32_t sequence) const {
-    const auto made = pool->take(6);
+    const auto made = pool->take();
     made->header.sequence = sequence;
     return made;
   }
@@ -105,7 +105,7 @@ TEST(Mailbox, LetsGoOfPacketsThatWereHandedOver) {
   mailbox.put({packet, letters.to});
   posted[0]();
   packet.reset();
-  EXPECT_EQ(letters.pool->take(6).get(), address) << "it has come home";
+  EXPECT_EQ(letters.pool->take().get(), address) << "it has come home";
 }
 
 TEST(Mailbox, TakesNoMemoryForAPacketOnceItHasGrown) {

@@ -17,26 +17,41 @@ namespace {
 
 using test::allocations;
 
-TEST(PacketPool, GivesAPacketOfTheSizeAskedFor) {
-  const auto pool = std::make_shared<PacketPool>();
-  EXPECT_EQ(pool->take(12)->payload.size(), 12U);
-  EXPECT_EQ(pool->take(3)->payload.size(), 3U);
-  EXPECT_EQ(pool->take(24)->payload_bytes().size(), 96U);
-  EXPECT_TRUE(pool->take(0)->payload_bytes().empty());
+TEST(Payload, HasTheSizeAskedForAndKeepsItsMemory) {
+  Payload payload;
+  EXPECT_TRUE(payload.bytes().empty());
+  EXPECT_EQ(payload.resize_floats(24).size(), 24U);
+  EXPECT_EQ(payload.bytes().size(), 96U);
+  const std::byte* const memory = payload.bytes().data();
+  EXPECT_EQ(payload.resize(3).size(), 3U);
+  EXPECT_TRUE(payload.floats().empty());
+  EXPECT_EQ(payload.resize(96).data(), memory);
+}
+
+TEST(Payload, IsCutToWhatWasWrittenAndNeverGrowsBy) {
+  Payload payload;
+  payload.resize(100)[9] = std::byte{7};
+  payload.truncate(10);
+  ASSERT_EQ(payload.bytes().size(), 10U);
+  EXPECT_EQ(payload.bytes()[9], std::byte{7});
+  payload.truncate(50);
+  EXPECT_EQ(payload.bytes().size(), 10U);
 }
 
 TEST(PacketPool, GivesTheSamePacketAgainWithAFreshHeader) {
   const auto pool = std::make_shared<PacketPool>();
-  auto packet = pool->take(6);
+  auto packet = pool->take();
   packet->header.sequence = 77;
   packet->header.flags = protocol::kFlagLast;
+  packet->view_serial = 9;
   const Packet* first = packet.get();
-  const float* payload = packet->payload.data();
+  const std::byte* payload = packet->payload.resize(24).data();
   packet.reset();
-  packet = pool->take(6);
+  packet = pool->take();
   EXPECT_EQ(packet.get(), first);
-  EXPECT_EQ(packet->payload.data(), payload);
+  EXPECT_EQ(packet->payload.resize(24).data(), payload);
   EXPECT_EQ(packet->header, protocol::PacketHeader{});
+  EXPECT_EQ(packet->view_serial, 0U);
 }
 
 TEST(PacketPool, NeverGivesAPacketThatSomebodyReads) {
@@ -44,13 +59,13 @@ TEST(PacketPool, NeverGivesAPacketThatSomebodyReads) {
   std::vector<PacketPtr> held;
   std::set<const Packet*> addresses;
   for (int i = 0; i < 20; ++i) {
-    held.push_back(pool->take(6));
+    held.push_back(pool->take());
     EXPECT_TRUE(addresses.insert(held.back().get()).second);
   }
   const PacketPtr reader = held.front();
   held.clear();
   for (int i = 0; i < 20; ++i) {
-    held.push_back(pool->take(6));
+    held.push_back(pool->take());
     EXPECT_NE(held.back(), reader);
   }
 }
@@ -61,7 +76,8 @@ TEST(PacketPool, TakesNoMemoryOnceItIsWarm) {
     PacketPtr latest;
     PacketPtr on_a_socket;
     for (int i = 0; i < rounds; ++i) {
-      const PacketPtr made = pool->take(6000);
+      const NewPacketPtr made = pool->take();
+      made->payload.resize_floats(6000);
       on_a_socket = latest;
       latest = made;
     }
@@ -77,7 +93,7 @@ TEST(PacketPool, TakesNoMemoryOnceItIsWarm) {
 TEST(PacketPool, MayGoBeforeItsPackets) {
   auto pool = std::make_shared<PacketPool>();
   const std::weak_ptr<PacketPool> watched = pool;
-  PacketPtr packet = pool->take(6);
+  PacketPtr packet = pool->take();
   pool.reset();
   EXPECT_FALSE(watched.expired()) << "a packet on a socket needs it to come home";
   packet.reset();
@@ -87,10 +103,10 @@ TEST(PacketPool, MayGoBeforeItsPackets) {
 TEST(PacketPool, LetsGoOfPacketsBeyondAFew) {
   const auto pool = std::make_shared<PacketPool>();
   std::vector<PacketPtr> many;
-  for (int i = 0; i < 100; ++i) many.push_back(pool->take(6));
+  for (int i = 0; i < 100; ++i) many.push_back(pool->take());
   many.clear();
   const std::size_t at_rest = allocations();
-  for (int i = 0; i < 100; ++i) many.push_back(pool->take(6));
+  for (int i = 0; i < 100; ++i) many.push_back(pool->take());
   EXPECT_GT(allocations(), at_rest) << "a burst is not kept for ever";
 }
 
@@ -101,10 +117,10 @@ TEST(PacketPool, ServesManyThreads) {
   for (int t = 0; t < 4; ++t) {
     threads.emplace_back([&, t] {
       for (int i = 0; i < 2000; ++i) {
-        const auto packet = pool->take(8);
-        packet->payload.assign(8, static_cast<float>(t));
+        const auto packet = pool->take();
+        for (float& value : packet->payload.resize_floats(8)) value = static_cast<float>(t);
         std::vector<PacketPtr> readers(3, packet);
-        for (const float value : readers.back()->payload) wrong += value == static_cast<float>(t) ? 0 : 1;
+        for (const float value : readers.back()->payload.floats()) wrong += value == static_cast<float>(t) ? 0 : 1;
       }
     });
   }

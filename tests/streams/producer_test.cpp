@@ -34,8 +34,8 @@ constexpr std::size_t kAWhile = 12;  ///< packets of another stream, at 240 a se
 std::vector<model::ScenePtr> square_and_witness() {
   return {scene_of("main", {square_actor("square"), square_actor("witness", {{.spacing_s = 1000.0}})})};
 }
-const StreamKey kSquare{"main", "square", 200.0};
-const StreamKey kWitness{"main", "witness", 240.0};
+const StreamKey kSquare = test::vertices_of("main", "square", 200.0);
+const StreamKey kWitness = test::vertices_of("main", "witness", 240.0);
 
 RunningStage::Act seek_to(double time_s) {
   return [time_s](Player& player, const PlayRange& range, ClockUs now_us) { player.seek(range, time_s, now_us); };
@@ -66,8 +66,8 @@ TEST(Producer, SendsTheFirstPacketAtOnceWithAllItsFields) {
   EXPECT_LE(packet->header.server_us, steady_now_us());
   EXPECT_EQ(packet->header.revision, 0U);
   EXPECT_EQ(packet->header.payload_bytes, 4U * 6U * 4U);
-  EXPECT_EQ(packet->payload_bytes().size(), packet->header.payload_bytes);
-  EXPECT_EQ(packet->payload, vertices_at(s.stage.view(), "square", 1.25));
+  EXPECT_EQ(packet->payload.bytes().size(), packet->header.payload_bytes);
+  EXPECT_EQ(test::floats_of(*packet), vertices_at(s.stage.view(), "square", 1.25));
   EXPECT_NE(packet->source, 0U);
 }
 
@@ -132,7 +132,7 @@ TEST(Producer, GivesALateJoinerOfAMovingStreamTheLatestPacketAndThenTheSameAsThe
 
 TEST(Producer, GivesALateJoinerAPacketAtOnceAlsoWhileAChangeWaitsForItsTurn) {
   Streaming s(square_and_witness());
-  const StreamKey slow{"main", "square", 0.05};  // a packet in twenty seconds
+  const StreamKey slow = test::vertices_of("main", "square", 0.05);  // a packet in twenty seconds
   s.subscribe(slow, kStream);
   const PacketPtr first = s.sink->wait_for(kStream, 1)[0];
   s.stage.act(seek_to(1.0), "square");
@@ -152,7 +152,7 @@ TEST(Producer, ShowsASeekInOnePacket) {
   EXPECT_EQ(sought->header.flags, kFlagKey | kFlagDiscontinuity | kFlagLast);
   EXPECT_EQ(sought->header.media_us, 1'500'000);
   EXPECT_EQ(sought->header.sequence, 1U);
-  EXPECT_EQ(sought->payload, vertices_at(s.stage.view(), "square", 1.5));
+  EXPECT_EQ(test::floats_of(*sought), vertices_at(s.stage.view(), "square", 1.5));
   s.subscribe(kWitness, 1);
   s.sink->wait_for(1, 1);
   EXPECT_EQ(s.sink->packets(kStream).size(), 2U);
@@ -189,14 +189,14 @@ TEST(Producer, SendsTheTimeThatHoldsAtTheReadingItTells) {
     EXPECT_GT(header.server_us, packets[i - 1]->header.server_us);
     EXPECT_NEAR(static_cast<double>(header.media_us), static_cast<double>(header.server_us - started_us), 2.0);
     const double time_s = seconds_between(started_us, header.server_us);
-    EXPECT_NEAR(packets[i]->payload[1], time_s / 1000.0, 1e-5) << "the height of the first vertex: a metre in 1000 s";
+    EXPECT_NEAR(packets[i]->payload.floats()[1], time_s / 1000.0, 1e-5) << "the height of the first vertex: a metre in 1000 s";
   }
 }
 
 TEST(Producer, ReadsTheClockOnAGrid) {
   Streaming s(square_and_witness());
   s.stage.act(&Player::play, "witness");
-  const StreamKey key{"main", "witness", 125.0};
+  const StreamKey key = test::vertices_of("main", "witness", 125.0);
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 20);
   s.unsubscribe(key, kStream);
@@ -220,7 +220,7 @@ TEST(Producer, EndsAPauseWithAPacketOfThePausedTime) {
   const double time_s = stage::show_at(*paused.view, paused.now_us).actors[1].time_s;
   EXPECT_EQ(packets.back()->header.media_us, std::llround(time_s * 1e6));
   EXPECT_EQ(packets.back()->header.flags, kFlagKey | kFlagLast) << "time has stopped, nothing has jumped";
-  EXPECT_EQ(packets.back()->payload, vertices_at(s.stage.view(), "witness", time_s));
+  EXPECT_EQ(test::floats_of(*packets.back()), vertices_at(s.stage.view(), "witness", time_s));
   for (std::size_t i = 2; i + 1 < packets.size(); ++i) EXPECT_EQ(packets[i]->header.flags & kFlagLast, 0);
   s.stage.act(&Player::play, "square");
   s.let_pass(kSquare, kAWhile);
@@ -245,7 +245,7 @@ TEST(Producer, GoesOnAfterAPauseFromThePausedTime) {
 TEST(Producer, EndsAOnceWithThePacketOfItsEnd) {
   Streaming s({scene_of(
       "main", {square_actor("short", {{.keys = 2, .spacing_s = 0.05}}), square_actor("witness", {{.spacing_s = 1000.0}})})});
-  const StreamKey key{"main", "short", 240.0};
+  const StreamKey key = test::vertices_of("main", "short", 240.0);
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 1);
   s.stage.act(
@@ -256,9 +256,9 @@ TEST(Producer, EndsAOnceWithThePacketOfItsEnd) {
       "short");
   const auto packets = s.sink->wait_until(kStream, [](const Packet& p) { return p.header.media_us == 50'000; });
   EXPECT_EQ(packets.back()->header.flags, kFlagKey | kFlagLast);
-  EXPECT_EQ(packets.back()->payload, vertices_at(s.stage.view(), "short", 0.05));
+  EXPECT_EQ(test::floats_of(*packets.back()), vertices_at(s.stage.view(), "short", 0.05));
   s.stage.wait_for(RunningStage::Kind::PlayerEnded, 1);
-  s.let_pass({"main", "short", 100.0}, 1);
+  s.let_pass(test::vertices_of("main", "short", 100.0), 1);
   for (const PacketPtr& p : s.sink->packets(kStream)) {
     if (p->header.sequence <= packets.back()->header.sequence) continue;
     EXPECT_EQ(p->header.media_us, 50'000);
@@ -268,7 +268,7 @@ TEST(Producer, EndsAOnceWithThePacketOfItsEnd) {
 /// A short clip repeats: a packet is marked if it lies beyond a seam that breaks.
 void expect_jumps_at_seams(bool closed) {
   Streaming s({scene_of("main", {square_actor("short", {{.keys = 2, .spacing_s = 0.01, .closed = closed}})})});
-  const StreamKey key{"main", "short", 240.0};
+  const StreamKey key = test::vertices_of("main", "short", 240.0);
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 1);
   const ClockUs started_us = s.stage.act(&Player::play).now_us;
@@ -301,8 +301,8 @@ TEST(Producer, ShowsAnEditWithItsRevision) {
   const PacketPtr edited = s.sink->wait_for(kStream, 2)[1];
   EXPECT_EQ(edited->header.flags, kFlagKey | kFlagDiscontinuity | kFlagLast);
   EXPECT_EQ(edited->header.revision, 1U);
-  EXPECT_EQ(edited->payload[1], -4.0F);
-  EXPECT_EQ(edited->payload, vertices_at(s.stage.view(), "square", 0.0));
+  EXPECT_EQ(edited->payload.floats()[1], -4.0F);
+  EXPECT_EQ(test::floats_of(*edited), vertices_at(s.stage.view(), "square", 0.0));
 }
 
 TEST(Producer, NeverShowsAnEditThatIsNotDurable) {
@@ -323,12 +323,12 @@ TEST(Producer, NeverShowsAnEditThatIsNotDurable) {
 
 TEST(Producer, ShowsTheRestShapeOfAClipWithoutKeyframes) {
   Streaming s({scene_of("main", {square_actor("empty", {{.keys = 0}})})});
-  s.subscribe({"main", "empty", 30.0}, kStream);
+  s.subscribe(test::vertices_of("main", "empty", 30.0), kStream);
   const PacketPtr packet = s.sink->wait_for(kStream, 1)[0];
   EXPECT_EQ(packet->header.flags, kFlagKey | kFlagLast);
   EXPECT_EQ(packet->header.media_us, 0);
   const auto rest = s.stage.view()->scene->actors[0]->rest;
-  EXPECT_TRUE(std::equal(rest->positions().begin(), rest->positions().end(), packet->payload.begin()));
+  EXPECT_TRUE(std::equal(rest->positions().begin(), rest->positions().end(), packet->payload.floats().begin()));
 }
 
 TEST(Producer, MarksAChangeOfClip) {

@@ -30,7 +30,7 @@ void wait_until_clock_reads(ClockUs at_us) {
 // The tick of a reading may come late, after a seek at a later reading: time before the seek is not the new playhead's.
 TEST(ProducerTiming, NeverShowsAPlayheadAtAReadingBeforeItWasSet) {
   Streaming s({scene_of("main", {square_actor("square", {{.keys = 2, .spacing_s = 1000.0}})})});
-  const StreamKey key{"main", "square", 5.0};
+  const StreamKey key = test::vertices_of("main", "square", 5.0);
   constexpr ClockUs kPeriodUs = 200'000;
   s.stage.act([](Player& player, const PlayRange& range, ClockUs now_us) {
     player.seek(range, 400.0, now_us);
@@ -70,7 +70,7 @@ class BusyWorker {
 TEST(ProducerTiming, MissesReadingsWhileAnEvaluationIsUnderWayAndQueuesNone) {
   Streaming s({scene_of("main", {square_actor("square", {{.keys = 2, .spacing_s = 1000.0}})})}, 1);
   s.stage.act(&Player::play);
-  const StreamKey key{"main", "square", 200.0};
+  const StreamKey key = test::vertices_of("main", "square", 200.0);
   constexpr ClockUs kPeriodUs = 5'000;
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 3);
@@ -94,7 +94,7 @@ TEST(ProducerTiming, MissesReadingsWhileAnEvaluationIsUnderWayAndQueuesNone) {
 TEST(ProducerTiming, CountsTheReadingsItMissed) {
   Streaming s({scene_of("main", {square_actor("square", {{.keys = 2, .spacing_s = 1000.0}})})}, 1);
   s.stage.act(&Player::play);
-  s.subscribe({"main", "square", 200.0}, kStream);
+  s.subscribe(test::vertices_of("main", "square", 200.0), kStream);
   s.sink->wait_for(kStream, 3);
   const std::int64_t before = s.stage.metrics.ticks_missed_total.load();
   auto busy = std::make_unique<BusyWorker>(s);
@@ -107,7 +107,7 @@ TEST(ProducerTiming, CountsTheReadingsItMissed) {
 
 TEST(ProducerTiming, ShowsTheNewestStateAfterABusyWorker) {
   Streaming s({scene_of("main", {square_actor("square")})}, 1);
-  const StreamKey key{"main", "square", 200.0};
+  const StreamKey key = test::vertices_of("main", "square", 200.0);
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 1);
   auto busy = std::make_unique<BusyWorker>(s);
@@ -124,8 +124,8 @@ TEST(ProducerTiming, SendsTheFirstPacketAtOnceAtAnyRate) {
   Streaming s({scene_of("main", {square_actor("square"), square_actor("witness", {{.spacing_s = 1000.0}})})}, 1);
   s.stage.act(&Player::play, "witness");
   std::uint32_t stream = 1;
-  for (const double rate : {1e-3, 1e-9, 1e-12}) s.subscribe({"main", "square", rate}, stream++);
-  s.let_pass({"main", "witness", 240.0}, 12);  // one worker, one queue: those before have had their turn
+  for (const double rate : {1e-3, 1e-9, 1e-12}) s.subscribe(test::vertices_of("main", "square", rate), stream++);
+  s.let_pass(test::vertices_of("main", "witness", 240.0), 12);  // one worker, one queue: those before have had their turn
   for (stream = 1; stream <= 3; ++stream) EXPECT_EQ(s.sink->packets(stream).size(), 1U) << "stream " << stream;
 }
 
@@ -135,8 +135,8 @@ TEST(ProducerTiming, AVanishingRateIsSlowAndNotFast) {
       {scene_of("main", {square_actor("square", {{.spacing_s = 1000.0}}), square_actor("witness", {{.spacing_s = 1000.0}})})},
       1);
   s.stage.act(&Player::play);
-  s.subscribe({"main", "square", 1e-300}, kStream);
-  s.let_pass({"main", "witness", 240.0}, 12);
+  s.subscribe(test::vertices_of("main", "square", 1e-300), kStream);
+  s.let_pass(test::vertices_of("main", "witness", 240.0), 12);
   EXPECT_LE(s.sink->packets(kStream).size(), 1U);
 }
 

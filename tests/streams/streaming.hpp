@@ -18,6 +18,17 @@
 
 namespace tweend::test {
 
+/// The key of a stream of an actor's vertices.
+inline streams::StreamKey vertices_of(std::string scene, std::string actor, double rate) {
+  return {std::move(scene), rate, streams::VerticesSpec{std::move(actor)}};
+}
+
+/// A packet's payload as numbers.
+inline std::vector<float> floats_of(const streams::Packet& packet) {
+  const auto floats = packet.payload.floats();
+  return {floats.begin(), floats.end()};
+}
+
 /// A connection that keeps all it is given.
 class RecordingSink final : public streams::PacketSink {
  public:
@@ -47,7 +58,7 @@ class RecordingSink final : public streams::PacketSink {
     const bool came = changed_.wait_for(lock, kPatience, [&] { return of(stream).size() >= count; });
     EXPECT_TRUE(came) << "expected " << count << " packets of stream " << stream << ", found " << of(stream).size();
     auto packets = of(stream);
-    while (packets.size() < count) packets.push_back(std::make_shared<streams::PacketPool>()->take(24));  // has failed already
+    while (packets.size() < count) packets.push_back(std::make_shared<streams::PacketPool>()->take());  // has failed already
     return packets;
   }
   /// Waits for a packet of a stream that fits; the packets so far, that one last.
@@ -101,14 +112,21 @@ class RecordingSink final : public streams::PacketSink {
 /// A stage with streams on it, as the server wires them; sinks are called on a thread of their own.
 class Streaming {
  public:
-  explicit Streaming(std::vector<model::ScenePtr> scenes, std::size_t worker_threads = 2)
-      : stage(std::move(scenes)), workers(worker_threads), delivery(1), hub(*stage, workers, deliver(), stage.metrics) {
+  /// @param render  off where a test draws nothing: a context takes its time to open
+  explicit Streaming(std::vector<model::ScenePtr> scenes, std::size_t worker_threads = 2,
+                     render::RenderOptions render = {.off = true})
+      : stage(std::move(scenes)),
+        workers(worker_threads),
+        renderer(render),
+        delivery(1),
+        hub(*stage, workers, renderer, deliver(), stage.metrics) {
     stage.start([this](const std::string& scene, const stage::SceneViewPtr& view) { hub.follow(scene, view); });
   }
   ~Streaming() {
     stage.store.release();
     stage->post([this] { hub.stop(); });
     stage.settle();
+    renderer.stop();
     workers.stop();  // before the stage, on which evaluations under way still end
     stage.stop();
     delivery.stop();
@@ -144,6 +162,7 @@ class Streaming {
 
   RunningStage stage;
   WorkerPool workers;
+  render::RenderThread renderer;
   WorkerPool delivery;
   streams::Hub hub;
   std::shared_ptr<RecordingSink> sink = std::make_shared<RecordingSink>();
