@@ -15,6 +15,11 @@ enum class PacketKind : std::uint8_t { Pose = 1, Vertices = 2, Frame = 3 };
 /// Vertices payload: n × 3 float32 positions, then n × 3 float32 normals, little-endian, model space.
 inline constexpr std::uint8_t kVerticesF32 = 0;
 
+/// Encodings of a frame: a JPEG or PNG file, or width × height × 4 bytes RGBA, sRGB, top row first. (2 is H.264, to come.)
+inline constexpr std::uint8_t kFrameJpeg = 0;
+inline constexpr std::uint8_t kFramePng = 1;
+inline constexpr std::uint8_t kFrameRgba = 3;
+
 /// Bits of PacketHeader::flags.
 inline constexpr std::uint8_t kFlagKey = 1;            ///< decodes on its own
 inline constexpr std::uint8_t kFlagDiscontinuity = 2;  ///< seek, wrap of an open clip, edit, clip change

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "clients/cli/exit_code.hpp"
@@ -29,6 +30,7 @@ struct Arguments;
 /// something that only this program uses.
 struct Field {
   Field(const char* parameter) : path(parameter) {}  // implicit: most fields are parameters
+  Field(std::string parameter) : path(std::move(parameter)) {}
   std::string path;
   bool is_own = false;
 };

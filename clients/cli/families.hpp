@@ -14,6 +14,7 @@ void add_edit_commands(CommandSet& commands);        ///< undo, redo, apply
 void add_playback_commands(CommandSet& commands);    ///< play, pause, stop, seek, step, set, status
 void add_view_commands(CommandSet& commands);        ///< camera, light
 void add_sample_commands(CommandSet& commands);      ///< vertices
+void add_frame_commands(CommandSet& commands);       ///< frame
 void add_event_commands(CommandSet& commands);       ///< events, wait …
 void add_watch_commands(CommandSet& commands);       ///< watch …
 void add_raw_commands(CommandSet& commands);         ///< call, methods

@@ -37,6 +37,18 @@ std::string to_line(const Json& value) { return value.dump(-1, ' ', false, Json:
 
 std::string number_text(double value) { return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value); }
 
+std::string bytes_text(std::uint64_t bytes) {
+  if (bytes < 1000) return fmt::format("{} B", bytes);
+  double value = static_cast<double>(bytes) * 1e-3;
+  const char* unit = "kB";
+  for (const char* next : {"MB", "GB", "TB"}) {
+    if (value < 999.95) break;  // or it would read 1000.0
+    value *= 1e-3;
+    unit = next;
+  }
+  return fmt::format("{:.1f} {}", value, unit);
+}
+
 std::string printable(std::string_view text) {
   std::string line(text);
   std::replace_if(

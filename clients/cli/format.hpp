@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
 #include <iosfwd>
 #include <string>
@@ -15,6 +16,9 @@ namespace tweend::cli {
 
 /// A number as people write it: six digits at most, no -0.
 [[nodiscard]] std::string number_text(double value);
+
+/// A number of bytes as people read it: `812 B`, `23.4 kB`, `1.9 MB`.
+[[nodiscard]] std::string bytes_text(std::uint64_t bytes);
 
 /// The text on one line, without control characters: names in files may hold what would steer a terminal.
 [[nodiscard]] std::string printable(std::string_view text);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
 #include <memory>
 #include <optional>
@@ -19,6 +20,7 @@ struct Io {
   std::istream& in;
   std::ostream& out;
   std::ostream& err;
+  std::size_t err_columns = 0;  ///< of the terminal that `err` is; 0: it is none, and nobody watches it
 };
 
 /// What holds for every command.
@@ -45,6 +47,8 @@ class Session {
   [[nodiscard]] const Options& options() const noexcept { return options_; }
   [[nodiscard]] std::ostream& out() const noexcept { return io_.out; }
   [[nodiscard]] std::ostream& err() const noexcept { return io_.err; }
+  /// Of the terminal on standard error; 0: it is none.
+  [[nodiscard]] std::size_t err_columns() const noexcept { return io_.err_columns; }
   /// `{scene}` where one was named, else `{}`.
   [[nodiscard]] Json scene_params() const;
   /// Writes a line and lets it out at once: others may read the events as they come.

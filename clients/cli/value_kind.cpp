@@ -149,6 +149,16 @@ ValueKind orbit() {
           }};
 }
 
+ValueKind size() {
+  return {
+      "WIDTHxHEIGHT", [](const std::string& found) {
+        const std::string expected = "WIDTHxHEIGHT in pixels, as 640x360";
+        const auto sides = split(found, 'x');
+        if (sides.size() != 2) throw unexpected(expected, found);
+        return Json{{"width", parse<std::uint32_t>(sides[0], expected)}, {"height", parse<std::uint32_t>(sides[1], expected)}};
+      }};
+}
+
 std::string read_file(const std::string& path, std::istream& in) {
   std::ifstream file;
   if (path != "-") file.open(path, std::ios::binary);

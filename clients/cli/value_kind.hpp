@@ -13,7 +13,7 @@ namespace tweend::cli {
 /// What may be written for an argument, and the JSON that it means.
 struct ValueKind {
   /// For the help and the completion: `a|b` lists the words, ACTOR, ASSET, CLIP, SCENE and METHOD name things of the server,
-  /// FILE is completed as such, anything else is only shown.
+  /// FILE and DIR are completed as such, anything else is only shown.
   std::string shape;
   std::function<Json(const std::string& text)> read;  ///< throws Usage, saying what was expected
 };
@@ -42,6 +42,9 @@ struct ValueKind {
 [[nodiscard]] ValueKind turn_y();
 /// `AZIMUTH,ELEVATION[,DISTANCE]` as the object of camera.set.
 [[nodiscard]] ValueKind orbit();
+
+/// `WIDTHxHEIGHT` as {width, height}.
+[[nodiscard]] ValueKind size();
 
 /// Reads the whole of a file, or of `in` for `-`. Throws Usage.
 [[nodiscard]] std::string read_file(const std::string& path, std::istream& in);

@@ -7,19 +7,11 @@
 #include "clients/cli/common_options.hpp"
 #include "clients/cli/families.hpp"
 #include "clients/cli/format.hpp"
+#include "clients/cli/picture_options.hpp"
 #include "clients/cli/session.hpp"
 
 namespace tweend::cli {
 namespace {
-
-/// An orbit looks at a target of its own: where both are given, --target is meant for it.
-Json orbit_with_target(Json params) {
-  if (params.contains("orbit") && params.contains("target")) {
-    params["orbit"]["target"] = params["target"];
-    params.erase("target");
-  }
-  return params;
-}
 
 /// `camera` and `light`: sets what was given, or where nothing was, asks what there is.
 Command::Action sets_or_tells(std::string method, std::string part) {
@@ -36,16 +28,7 @@ Command::Action sets_or_tells(std::string method, std::string part) {
 }  // namespace
 
 void add_view_commands(CommandSet& commands) {
-  with_edit_options(commands.add("camera", "Set the scene's camera; without options: show it."))
-      .option("--eye", "eye", numbers("X,Y,Z", {3}), "where it stands, metres")
-      .option("--target", "target", numbers("X,Y,Z", {3}), "what it looks at")
-      .option("--up", "up", numbers("X,Y,Z", {3}), "what is up")
-      .option("--fov-y", "fov_y", number("RADIANS"), "the whole vertical angle")
-      .option("--near", "near", number("METRES"), "nothing nearer is drawn")
-      .option("--far", "far", number("METRES"), "nothing further away is drawn")
-      .option("--orbit", "orbit", orbit(), "around the target, in radians and metres")
-      .flag("--fit", "fit", "keep the direction and bring all visible actors into view")
-      .exclusive({"--eye", "--orbit", "--fit"})
+  with_camera(with_edit_options(commands.add("camera", "Set the scene's camera; without options: show it.")), "")
       .runs(sets_or_tells("camera.set", "camera"));
   with_edit_options(commands.add("light", "Set the scene's light; without options: show it."))
       .option("--position", "position", numbers("X,Y,Z", {3}), "metres")

@@ -30,6 +30,10 @@ void add_serve_options(CLI::App& serve, ServeOptions& o) {
                   "Pages of this origin may speak to the server, e.g. https://studio.example")
       ->type_name("ORIGIN")
       ->allow_extra_args(false);
+  serve.add_flag("--no-render", o.render.off, "Draw nothing: for those who only want numbers");
+  serve.add_option("--samples", o.render.samples, "Samples a pixel; by default 4 on a GPU and 1 where the processor draws")
+      ->type_name("N")
+      ->check(CLI::Range(1, 16));
 }
 
 void add_limit_options(CLI::App& serve, Limits& l) {
@@ -47,7 +51,9 @@ void add_limit_options(CLI::App& serve, Limits& l) {
   add("--max-clips", l.clips_per_actor, "Clips an actor");
   add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
   add("--max-undo", l.undo_steps, "Steps that can be undone");
+  add("--max-frame-side", l.frame_side, "Pixels of a picture's width, and of its height");
   add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");
+  add("--max-texture-pixels", l.texture_pixels, "Pixels of a texture");
 }
 
 void print_commands() {

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/render_thread.hpp"
 #include "server/base/limits.hpp"
 #include "server/net/network.hpp"
 
@@ -19,6 +20,7 @@ struct ServeOptions {
   std::vector<std::string> allowed_origins;
   bool play = false;
   bool no_auth = false;
+  render::RenderOptions render;
   Limits limits;
 };
 

@@ -121,6 +121,11 @@ class Server {
       : options_(options), library_(std::move(library)), stage_(store_, options_.limits, metrics_) {}
 
   Status start(const net::Endpoint& endpoint) {
+    if (renderer_.device()) {
+      log::info("drawing with " + *renderer_.device());
+    } else if (renderer_.wanted()) {
+      log::warn("no pictures: " + renderer_.device().error().message);
+    }
     TWEEND_TRY(stage_.start(events_));
     staged_ = true;
     for (const std::string& asset : options_.load) TWEEND_TRY(load_asset(services_, asset));
@@ -142,7 +147,8 @@ class Server {
       quiet.set_value();
     });
     quiet.get_future().wait();
-    workers_.stop();  // before the stage, on which evaluations under way still end
+    renderer_.stop();  // before the workers, which still encode what it has drawn
+    workers_.stop();   // before the stage, on which evaluations under way still end
     stage_.stop();
   }
 
@@ -154,10 +160,11 @@ class Server {
   store::MemoryStore store_;
   net::Network network_;
   WorkerPool workers_{std::max(2U, std::thread::hardware_concurrency())};
+  render::RenderThread renderer_{options_.render};
   stage::Stage stage_;
-  streams::Hub hub_{stage_, workers_, network_.post(), metrics_};
+  streams::Hub hub_{stage_, workers_, renderer_, network_.post(), metrics_};
   commands::EventHub events_{hub_, network_.post(), metrics_};
-  commands::Services services_{options_.limits, metrics_, library_, stage_, hub_, events_, workers_};
+  commands::Services services_{options_.limits, metrics_, library_, stage_, hub_, events_, workers_, renderer_};
 };
 
 Status run(const ServeOptions& options) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/assets/asset_name.hpp"
+#include "server/assets/obj_materials.hpp"
 #include "server/assets/obj_reader.hpp"
 
 namespace tweend::assets {
@@ -101,7 +102,7 @@ Result<ImportedModel> AssetLibrary::import_file(const AssetRoot& root, std::stri
   TWEEND_ASSIGN(const std::string text, root.read_file(name, limits_.asset_bytes));
   TWEEND_ASSIGN(const ObjFile file, read_obj(text, std::string(name), limits_));
   constexpr std::int64_t kFrame = 0;
-  return build_obj_model(std::string(name), {&file, 1}, {&kFrame, 1}, limits_);
+  return build(root, name, {&file, 1}, {&kFrame, 1}, limits_.asset_bytes - text.size());
 }
 
 Result<ImportedModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
@@ -123,7 +124,15 @@ Result<ImportedModel> AssetLibrary::import_sequence(const AssetRoot& root, std::
     files.push_back(std::move(file));
     frames.push_back(member.frame);
   }
-  return build_obj_model(std::string(name), files, frames, limits_);
+  return build(root, name, files, frames, bytes_left);
+}
+
+Result<ImportedModel> AssetLibrary::build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
+                                          std::span<const std::int64_t> frames, std::size_t bytes_left) const {
+  TWEEND_ASSIGN(ObjMaterials found, load_obj_materials(root, files.front(), bytes_left, limits_));
+  TWEEND_ASSIGN(ImportedModel model, build_obj_model(std::string(name), files, frames, limits_, found.materials));
+  model.warnings = std::move(found.warnings);
+  return model;
 }
 
 }  // namespace tweend::assets

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +18,7 @@ namespace tweend::assets {
 struct AssetInfo {
   std::string name;         ///< the path under its assets folder
   std::string type;         ///< "obj" or "obj_sequence"
-  std::uint64_t bytes = 0;  ///< of all its files
+  std::uint64_t bytes = 0;  ///< of all its .obj files
 };
 
 /// The assets of all assets folders, of which an earlier one hides a later one's asset of the same name.
@@ -25,6 +26,8 @@ struct AssetInfo {
 /// An asset is a .obj file, or a folder of NAME_000000.obj files: a sequence, in which the number is the frame.
 /// A sequence's files are not listed each, but may be imported each. Files named so in an assets folder itself make
 /// no sequence, which would have no name. Dot files and what lies under dot folders are not listed.
+///
+/// Materials and textures that an OBJ file names belong to its asset: see load_obj_materials.
 ///
 /// Nothing is kept between calls. Const methods are safe from any thread; they block on the disk and, for import,
 /// compute for a good while: call them from a worker.
@@ -37,9 +40,9 @@ class AssetLibrary {
   /// @return BadAsset if an assets folder itself can't be read
   [[nodiscard]] Result<std::vector<AssetInfo>> list() const;
 
-  /// Reads the asset anew.
-  /// @return NotFound; BadAsset naming file and line; Limit (Limits::asset_bytes, vertices_per_actor,
-  ///         keyframes_per_clip); Unavailable if memory runs out
+  /// Reads the asset anew. What its files name that isn't there is told by the model's warnings.
+  /// @return NotFound; BadAsset naming file and line; Limit (Limits::asset_bytes, texture_pixels,
+  ///         vertices_per_actor, keyframes_per_clip); Unavailable if memory runs out
   [[nodiscard]] Result<ImportedModel> import(std::string_view name) const;
 
  private:
@@ -48,6 +51,9 @@ class AssetLibrary {
   [[nodiscard]] Result<ImportedModel> import_file(const AssetRoot& root, std::string_view name) const;
   [[nodiscard]] Result<ImportedModel> import_sequence(const AssetRoot& root, std::string_view name,
                                                       std::vector<SequenceFile> members) const;
+  /// @param bytes_left  for the side files of `files`
+  [[nodiscard]] Result<ImportedModel> build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
+                                            std::span<const std::int64_t> frames, std::size_t bytes_left) const;
 
   std::vector<AssetRoot> roots_;
   Limits limits_;

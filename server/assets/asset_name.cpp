@@ -8,6 +8,7 @@ namespace tweend::assets {
 namespace {
 
 constexpr std::size_t kQuotedBytes = 200;
+constexpr std::size_t kMaxReferenceBytes = 4'096;  // Linux opens no longer path
 
 /// Bytes of the UTF-8 character that `text` begins with; 0 if it begins with none.
 std::size_t utf8_character(std::string_view text) noexcept {
@@ -36,6 +37,10 @@ bool is_clean_text(std::string_view text) noexcept {
   return true;
 }
 
+bool is_absolute(std::string_view reference) noexcept {
+  return reference.starts_with('/') || reference.starts_with('\\') || (reference.size() > 1 && reference[1] == ':');
+}
+
 char lower(char c) noexcept { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 }  // namespace
@@ -61,6 +66,26 @@ std::string join_name(std::string_view folder, std::string_view name) {
   std::string path(folder);
   if (!path.empty()) path += '/';
   return path += name;
+}
+
+std::optional<std::string> resolve_name(std::string_view folder, std::string_view reference) {
+  if (is_absolute(reference) || reference.size() > kMaxReferenceBytes) return std::nullopt;
+  std::string path(folder);
+  for (;;) {
+    const std::size_t slash = reference.find_first_of("/\\");
+    const std::string_view component = reference.substr(0, slash);
+    if (component == "..") {
+      if (path.empty()) return std::nullopt;
+      const std::size_t parent = path.rfind('/');
+      path.resize(parent == std::string::npos ? 0 : parent);
+    } else if (!component.empty() && component != ".") {
+      path = join_name(path, component);
+    }
+    if (slash == std::string_view::npos) break;
+    reference.remove_prefix(slash + 1);
+  }
+  if (!is_clean_name(path)) return std::nullopt;
+  return path;
 }
 
 std::string quoted_name(std::string_view name) {

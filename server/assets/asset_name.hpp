@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,6 +16,11 @@ namespace tweend::assets {
 
 /// `folder`/`name`, or `name` where the folder is "" (the root).
 [[nodiscard]] std::string join_name(std::string_view folder, std::string_view name);
+
+/// What `reference` names, as a file in `folder` ("": the root) writes it: '\\' parts components like '/', and empty
+/// ones, "." and ".." are followed.
+/// @return a clean name; nothing where it is absolute (also with a drive's letter), leaves the root, or can't be clean
+[[nodiscard]] std::optional<std::string> resolve_name(std::string_view folder, std::string_view reference);
 
 /// `name` in quotation marks for a message, cut at a character's end if it's long.
 [[nodiscard]] std::string quoted_name(std::string_view name);

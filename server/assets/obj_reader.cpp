@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <unordered_map>
 #include <utility>
 
 #include "server/assets/obj_scanner.hpp"
@@ -17,14 +18,14 @@
 namespace tweend::assets {
 namespace {
 
-// Keeps every count within the 32 bits of an index: a corner takes two bytes at least.
-constexpr std::size_t kMaxTextBytes = std::size_t{1} << 31U;
+// Each is looked for on the disk.
+constexpr std::size_t kMaxLibraries = 256;
 
-// Known, and of no concern to a polygon mesh: grouping and materials, display, lines and points, free-form geometry.
+// Known, and of no concern to a polygon mesh: grouping, display, lines and points, free-form geometry.
 constexpr std::string_view kSkipped[] = {
-    "o",        "g",          "s",         "mg",   "usemtl", "mtllib", "usemap", "maplib", "lod",  "bevel", "c_interp",
-    "d_interp", "shadow_obj", "trace_obj", "l",    "p",      "vp",     "cstype", "deg",    "bmat", "step",  "curv",
-    "curv2",    "surf",       "parm",      "trim", "hole",   "scrv",   "sp",     "end",    "con",  "ctech", "stech",
+    "o",         "g",    "s",    "mg",   "usemap", "maplib", "lod",  "bevel", "c_interp", "d_interp", "shadow_obj",
+    "trace_obj", "l",    "p",    "vp",   "cstype", "deg",    "bmat", "step",  "curv",     "curv2",    "surf",
+    "parm",      "trim", "hole", "scrv", "sp",     "end",    "con",  "ctech", "stech",
 };
 
 /// What an index points to.
@@ -69,6 +70,8 @@ class Reader {
     if (keyword == "vt") return read_texcoord();
     if (keyword == "vn") return read_normal();
     if (keyword == "f") return read_face();
+    if (keyword == "usemtl") return read_usemtl();
+    if (keyword == "mtllib") return read_mtllib();
     if (std::find(std::begin(kSkipped), std::end(kSkipped), keyword) != std::end(kSkipped)) return {};
     return fail_here("an OBJ statement (v, vt, vn, f, o, g, s, usemtl ...)", quoted_token(keyword));
   }
@@ -116,7 +119,7 @@ class Reader {
   }
 
   Status read_face() {
-    ObjFace face{static_cast<std::uint32_t>(file_.corners.size()), 0, scanner_.line()};
+    ObjFace face{static_cast<std::uint32_t>(file_.corners.size()), 0, scanner_.line(), material_};
     for (std::string_view token = scanner_.next_token(); !token.empty(); token = scanner_.next_token()) {
       TWEEND_ASSIGN(const ObjCorner corner, read_corner(token));
       const ObjCorner& first = face.corner_count == 0 ? corner : file_.corners[face.first_corner];
@@ -128,6 +131,31 @@ class Reader {
     }
     if (face.corner_count < 3) return fail_here("a face of at least 3 corners", fmt::to_string(face.corner_count));
     file_.faces.push_back(face);
+    return {};
+  }
+
+  Status read_usemtl() {
+    std::string name = scanner_.rest_of_statement();
+    if (name.empty()) {
+      material_ = kNoMaterial;
+      return {};
+    }
+    const auto next = static_cast<std::int32_t>(file_.material_names.size());
+    const auto [known, is_new] = index_of_material_.try_emplace(name, next);
+    if (is_new) file_.material_names.push_back(std::move(name));
+    material_ = known->second;
+    return {};
+  }
+
+  Status read_mtllib() {
+    std::vector<std::string>& libraries = file_.material_libraries;
+    std::string library = scanner_.rest_of_statement();
+    if (library.empty() || std::find(libraries.begin(), libraries.end(), library) != libraries.end()) return {};
+    if (libraries.size() == kMaxLibraries) {
+      return fail(ErrorCode::Limit, fmt::format("{}:{}: expected at most {} material libraries, found more", file_.name,
+                                                scanner_.line(), kMaxLibraries));
+    }
+    libraries.push_back(std::move(library));
     return {};
   }
 
@@ -182,26 +210,15 @@ class Reader {
 
   ObjScanner scanner_;
   std::size_t max_vertices_;
+  std::unordered_map<std::string, std::int32_t> index_of_material_;  ///< by name
+  std::int32_t material_ = kNoMaterial;                              ///< of the faces that follow
   ObjFile file_;
 };
-
-/// The line of the text's first NUL byte, if there is one: then it's no text at all, whatever it may look like.
-std::optional<std::ptrdiff_t> line_of_nul(std::string_view text) {
-  const std::size_t position = text.find('\0');
-  if (position == std::string_view::npos) return std::nullopt;
-  const std::string_view before = text.substr(0, position);
-  return std::count(before.begin(), before.end(), '\n') + 1;
-}
 
 }  // namespace
 
 Result<ObjFile> read_obj(std::string_view text, std::string name, const Limits& limits) {
-  if (text.size() > kMaxTextBytes) {
-    return fail(ErrorCode::Limit, fmt::format("{}: expected at most {} bytes, found {}", name, kMaxTextBytes, text.size()));
-  }
-  if (const auto line = line_of_nul(text)) {
-    return fail(ErrorCode::BadAsset, fmt::format("{}:{}: expected text, found a NUL byte: this is a binary file", name, *line));
-  }
+  TWEEND_TRY(check_text(text, name));
   return Reader(text, std::move(name), limits).read();
 }
 

@@ -18,11 +18,15 @@ struct ObjCorner {
   bool operator==(const ObjCorner&) const = default;
 };
 
+/// An ObjFace's material where no `usemtl` with a name stands before it.
+inline constexpr std::int32_t kNoMaterial = -1;
+
 /// A polygon: corners [first_corner, first_corner + corner_count) of the file, at least 3.
 struct ObjFace {
   std::uint32_t first_corner;
   std::uint32_t corner_count;
-  std::uint32_t line;  ///< where its statement begins, from 1
+  std::uint32_t line;                   ///< where its statement begins, from 1
+  std::int32_t material = kNoMaterial;  ///< which of the file's material names
   bool operator==(const ObjFace&) const = default;
 };
 
@@ -34,13 +38,18 @@ struct ObjFile {
   std::vector<float> normals;    ///< shape [vn statements × 3], of any length
   std::vector<ObjCorner> corners;
   std::vector<ObjFace> faces;
+  std::vector<std::string> material_names;      ///< of `usemtl`: each once, in order of first use
+  std::vector<std::string> material_libraries;  ///< of `mtllib`: each statement's once, as it stands: one name or several
 };
 
-/// Reads one OBJ file strictly: every token of `v`, `vt`, `vn` and `f` must be understood to its end. Statements about
-/// names, materials, smoothing, lines, points and free-form curves are skipped; one that OBJ doesn't have is an error.
+/// Reads one OBJ file strictly: every token of `v`, `vt`, `vn` and `f` must be understood to its end. `usemtl` and
+/// `mtllib` take the rest of their line as it stands; without a name, `usemtl` ends the use of a material. Statements
+/// about names, smoothing, lines, points and free-form curves are skipped; one that OBJ doesn't have is an error.
 /// Indices may point forwards in the file; negative ones count back from where they stand.
+///
 /// Pure; time and memory are proportional to the text. Safe from any thread.
-/// @return BadAsset as "name:line: expected …, found …"; Limit if there are too many vertices
+/// @return BadAsset as "name:line: expected …, found …"; Limit if there are too many vertices, or more than 256
+///         statements name libraries
 [[nodiscard]] Result<ObjFile> read_obj(std::string_view text, std::string name, const Limits& limits);
 
 }  // namespace tweend::assets

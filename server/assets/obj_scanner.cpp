@@ -1,15 +1,30 @@
 #include "server/assets/obj_scanner.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace tweend::assets {
 namespace {
 
+// A corner of a face takes two bytes at least.
+constexpr std::size_t kMaxTextBytes = std::size_t{1} << 31U;
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 bool is_blank(char c) noexcept { return c == ' ' || c == '\t'; }
 
 }  // namespace
+
+Status check_text(std::string_view text, std::string_view name) {
+  if (text.size() > kMaxTextBytes) {
+    return fail(ErrorCode::Limit, fmt::format("{}: expected at most {} bytes, found {}", name, kMaxTextBytes, text.size()));
+  }
+  const std::size_t nul = text.find('\0');
+  if (nul == std::string_view::npos) return {};
+  const std::string_view before = text.substr(0, nul);
+  return fail(ErrorCode::BadAsset, fmt::format("{}:{}: expected text, found a NUL byte: this is a binary file", name,
+                                               std::count(before.begin(), before.end(), '\n') + 1));
+}
 
 ObjScanner::ObjScanner(std::string_view text) noexcept : text_(text) {
   if (text_.starts_with(kByteOrderMark)) text_.remove_prefix(kByteOrderMark.size());
@@ -71,6 +86,22 @@ std::string_view ObjScanner::next_token() noexcept {
     ++position_;
   }
   return text_.substr(begin, position_ - begin);
+}
+
+std::string ObjScanner::rest_of_statement() {
+  std::string rest;
+  while (!at_end() && line_end(position_) == 0) {
+    if (const std::size_t bytes = continuation(position_); bytes != 0) {
+      rest += ' ';
+      position_ += bytes;
+      ++line_;
+    } else {
+      rest += text_[position_++];
+    }
+  }
+  rest.erase(std::find_if_not(rest.rbegin(), rest.rend(), is_blank).base(), rest.end());
+  rest.erase(rest.begin(), std::find_if_not(rest.begin(), rest.end(), is_blank));
+  return rest;
 }
 
 }  // namespace tweend::assets

@@ -2,11 +2,18 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+
+#include "server/base/result.hpp"
 
 namespace tweend::assets {
 
-/// Parts an OBJ text into statements and their tokens, and counts lines. Lines end in LF, CRLF or CR; a backslash at
+/// Whether `text` may be scanned at all.
+/// @return Limit past 2 GiB, which keeps every count of its parts within 32 bits; BadAsset where it holds a NUL byte
+[[nodiscard]] Status check_text(std::string_view text, std::string_view name);
+
+/// Parts an OBJ or MTL text into statements and their tokens, and counts lines. Lines end in LF, CRLF or CR; a backslash at
 /// a line's end continues the statement; '#' begins a comment, which no backslash continues; a UTF-8 byte order mark
 /// is skipped. The text must outlive the scanner and its tokens.
 class ObjScanner {
@@ -18,6 +25,10 @@ class ObjScanner {
 
   /// The next token of this statement; empty at its end.
   [[nodiscard]] std::string_view next_token() noexcept;
+
+  /// All that is left of this statement, without the blanks around it; empty if that's nothing. For names: they may hold
+  /// blanks, and a '#' is part of them ("Material #25"). Where the statement continues on a next line stands a space.
+  [[nodiscard]] std::string rest_of_statement();
 
   /// The line, from 1, of the last token; after the empty one the line on which the statement ends.
   [[nodiscard]] std::uint32_t line() const noexcept { return line_; }

@@ -10,6 +10,7 @@
 
 #include "server/animation/vertex_normals.hpp"
 #include "server/assets/asset_name.hpp"
+#include "server/assets/obj_surface.hpp"
 #include "server/assets/obj_topology.hpp"
 #include "server/assets/token.hpp"
 #include "server/assets/vertex_classes.hpp"
@@ -75,7 +76,7 @@ void append_row(std::vector<float>& out, const std::vector<float>& rows, std::in
 /// Shape [vertices × 2]; empty where no corner has texture coordinates, (0, 0) where only some lack them.
 std::vector<float> gather_texcoords(const ObjFile& file, std::span<const std::uint32_t> corners) {
   std::vector<float> out;
-  if (std::all_of(file.corners.begin(), file.corners.end(), [](const ObjCorner& c) { return c.vt < 0; })) return out;
+  if (!has_texcoords(file)) return out;
   out.reserve(2 * corners.size());
   for (const std::uint32_t corner : corners) {
     const std::int32_t vt = file.corners[corner].vt;
@@ -131,7 +132,7 @@ Error asset_error(std::string_view name, const Error& error) {
 }  // namespace
 
 Result<ImportedModel> build_obj_model(std::string source, std::span<const ObjFile> files, std::span<const std::int64_t> frames,
-                                      const Limits& limits) {
+                                      const Limits& limits, std::span<const std::optional<model::Material>> materials) {
   TWEEND_TRY(check_input(files, frames, limits));
   const VertexClasses vertices = find_vertices(files);
   if (vertices.count() > limits.vertices_per_actor) {
@@ -148,9 +149,10 @@ Result<ImportedModel> build_obj_model(std::string source, std::span<const ObjFil
   std::transform(indices.begin(), indices.end(), indices.begin(),
                  [&](std::uint32_t place) { return vertices.vertex_of_corner()[place]; });
 
-  auto mesh = model::Mesh::make(vertices.count(), std::move(indices), gather_texcoords(first, corners));
+  auto mesh =
+      model::Mesh::make(vertices.count(), std::move(indices), gather_texcoords(first, corners), make_surface(first, materials));
   if (!mesh) return asset_error(source, mesh.error());
-  ImportedModel imported{std::move(source), std::move(*mesh), {}};
+  ImportedModel imported{std::move(source), std::move(*mesh), {}, {}};
   imported.keys.reserve(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     TWEEND_ASSIGN(const std::vector<float> normals, gather_normals(files[i], corners, v_indices));

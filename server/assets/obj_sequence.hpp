@@ -24,7 +24,8 @@ struct ImportedKey {
 struct ImportedModel {
   std::string source;  ///< the asset's name
   model::MeshPtr mesh;
-  std::vector<ImportedKey> keys;  ///< at least one, in strictly ascending frame order
+  std::vector<ImportedKey> keys;      ///< at least one, in strictly ascending frame order
+  std::vector<std::string> warnings;  ///< a line each: what the files name that isn't there, and was passed over
 };
 
 /// Makes one model of files that show one mesh in several poses.
@@ -34,13 +35,17 @@ struct ImportedModel {
 /// the faces, polygons fanned from their first corner, and `v` that no face names dropped. Normals a file doesn't give,
 /// or gives with zero length, are computed from its positions, weighted by area, smooth over all faces that share `v`.
 ///
+/// The surface is that of the first file (make_surface); other files' materials are not looked at.
+///
 /// Pure; safe from any thread. Time is proportional to files × corners.
 /// @param files   at least one, each as read_obj made it
 /// @param frames  shape [files], strictly ascending, magnitudes up to 2^53
+/// @param materials  shape [material names of the first file], or empty: none is known
 /// @return BadAsset where two files' faces don't agree (see check_same_topology) or numbers can't be used;
 ///         Limit if there are too many vertices or files
 [[nodiscard]] Result<ImportedModel> build_obj_model(std::string source, std::span<const ObjFile> files,
-                                                    std::span<const std::int64_t> frames, const Limits& limits);
+                                                    std::span<const std::int64_t> frames, const Limits& limits,
+                                                    std::span<const std::optional<model::Material>> materials = {});
 
 /// What the name of a sequence's file says: "NAME_000010.obj" is {NAME, 10}.
 struct SequenceMember {

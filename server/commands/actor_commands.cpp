@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "server/base/log.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/edit_helpers.hpp"
 
@@ -109,6 +110,7 @@ struct Source {
 Result<Source> import_asset(const std::string& name, const Services& services) {
   auto imported = services.assets.import(name);
   if (!imported) return fail(imported.error().code, imported.error().message, "params.asset");
+  for (const std::string& warning : imported->warnings) log::warn(warning);
   model::VertexKeyPtr rest = imported->keys.front().vertices;
   return Source{std::move(imported->source), std::move(imported->mesh), std::move(rest), std::move(imported->keys)};
 }

@@ -16,7 +16,7 @@ struct AssetEntry {
   static void describe(FieldList<AssetEntry>& f) {
     f.add<&AssetEntry::name>("name", "Its path under the assets folder.");
     f.add<&AssetEntry::type>("type", "obj or obj_sequence.");
-    f.add<&AssetEntry::bytes>("bytes", "Size of its files.");
+    f.add<&AssetEntry::bytes>("bytes", "Size of its .obj files.");
   }
 };
 

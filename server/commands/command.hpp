@@ -28,6 +28,7 @@ enum class Shape : std::uint8_t {
   Ping,         ///< network thread, at once
   Query,        ///< network thread: reads the published view
   WorkerQuery,  ///< a worker: reads files, evaluates, or answers at length
+  AsyncQuery,   ///< begun on the network thread with the view of that moment; answered from wherever it ends
   Edit,         ///< planned on the stage's strand; pipelined
   HeavyEdit,    ///< planned on a worker first, to warm its scratch, then on the strand
   SceneEdit,    ///< creates or removes a scene, or moves in its history
@@ -86,6 +87,10 @@ struct ConnectionAnswer {
 };
 using ConnectionDone = std::function<void(ConnectionAnswer)>;
 
+/// Takes the answer of a query that ends elsewhere, on any thread. Once.
+template <class R>
+using AsyncDone = std::function<void(Result<R>)>;
+
 /// One row of the table.
 struct Command {
   std::string_view name;
@@ -98,6 +103,7 @@ struct Command {
   Params (*make_params)() = nullptr;
   // The one that fits the shape is set:
   Result<std::string> (*query)(const void*, const QueryContext&) = nullptr;
+  void (*async_query)(const void*, const QueryContext&, AsyncDone<std::string>) = nullptr;
   Result<std::string> (*edit)(const void*, EditContext&) = nullptr;
   const EditTarget& (*target)(const void*) = nullptr;
   void (*scene_edit)(const void*, const Services&, stage::EditOptions, stage::EditDone) = nullptr;
@@ -165,6 +171,18 @@ Command query_command(std::string_view name, Role role, std::string_view summary
   c.result = &protocol::type_of<typename detail::Unwrapped<typename S::Answer>::Type>();
   c.query = [](const void* p, const QueryContext& context) {
     return detail::encoded(Handler(*static_cast<const typename S::Request*>(p), context));
+  };
+  return c;
+}
+
+/// `void handler(const P&, const QueryContext&, const AsyncDone<R>&)`
+template <class R, class P, void (*Handler)(const P&, const QueryContext&, const AsyncDone<R>&)>
+Command async_query_command(std::string_view name, Role role, std::string_view summary) {
+  Command c = detail::row<P>(name, role, Shape::AsyncQuery, summary);
+  c.result = &protocol::type_of<R>();
+  c.async_query = [](const void* p, const QueryContext& context, AsyncDone<std::string> done) {
+    Handler(*static_cast<const P*>(p), context,
+            [done = std::move(done)](const Result<R>& result) { done(detail::encoded(result)); });
   };
   return c;
 }

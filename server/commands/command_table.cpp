@@ -19,8 +19,9 @@ const std::vector<Command>& command_table() {
     add_playback_commands(t);
     add_view_commands(t);
     add_vertices_commands(t);
-    add_event_commands(t);
+    add_frame_commands(t);
     add_stream_commands(t);
+    add_event_commands(t);
     return t;
   }();
   return table;

@@ -171,6 +171,7 @@ bool Conversation::may_start(const Item& item) const noexcept {
       return !worker_busy_ && outstanding_edits_ == 0;
     case Shape::Query:
     case Shape::WorkerQuery:
+    case Shape::AsyncQuery:
     case Shape::Connection:
       // A heavy edit may be answered before its worker has said that it is done.
       return outstanding_ == 0 && !worker_busy_;
@@ -193,6 +194,8 @@ void Conversation::start(const ItemKey& key) {
       return start_query(key, item);
     case Shape::WorkerQuery:
       return start_worker_query(key, item);
+    case Shape::AsyncQuery:
+      return start_async_query(key, item);
     case Shape::Edit:
     case Shape::HeavyEdit:
     case Shape::SceneEdit:
@@ -225,6 +228,15 @@ void Conversation::start_worker_query(const ItemKey& key, Item& item) {
       self->finish(key, std::move(answer));
     });
   });
+}
+
+void Conversation::start_async_query(const ItemKey& key, Item& item) {
+  const QueryContext context{services_, services_.stage.view(), steady_now_us()};
+  item.command->async_query(
+      item.params.get(), context, [self = shared_from_this(), key, id = item.id](const Result<std::string>& result) {
+        Answer answer = print(id, result);
+        self->to_network_([self, key, answer = std::move(answer)]() mutable { self->finish(key, std::move(answer)); });
+      });
 }
 
 void Conversation::start_edit(const ItemKey& key, Item& item) {

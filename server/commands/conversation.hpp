@@ -86,6 +86,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void start(const ItemKey& key);
   void start_query(const ItemKey& key, Item& item);
   void start_worker_query(const ItemKey& key, Item& item);
+  void start_async_query(const ItemKey& key, Item& item);
   void start_edit(const ItemKey& key, Item& item);
   void start_players(const ItemKey& key, Item& item);
   void start_connection(const ItemKey& key, Item& item);

@@ -43,7 +43,13 @@ struct PingResult {
   }
 };
 
-Result<HelloResult> hello(const HelloParams&, const QueryContext&) { return HelloResult{}; }
+Result<HelloResult> hello(const HelloParams&, const QueryContext& context) {
+  HelloResult result;
+  if (context.services.renderer.device()) {
+    for (const char* encoding : {"frames:jpeg", "frames:png", "frames:rgba"}) result.capabilities.emplace_back(encoding);
+  }
+  return result;
+}
 
 Result<PingResult> ping(const NoParams&, const QueryContext& context) { return PingResult{context.now_us}; }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "render/render_thread.hpp"
 #include "server/assets/asset_library.hpp"
 #include "server/base/limits.hpp"
 #include "server/base/metrics.hpp"
@@ -22,6 +23,7 @@ struct Services {
   streams::Hub& hub;
   EventHub& events;
   WorkerPool& workers;
+  render::RenderThread& renderer;
 };
 
 }  // namespace tweend::commands

@@ -1,59 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
-
-namespace tweend::commands {
-
-enum class StreamKind : std::uint8_t { Vertices };
-enum class StreamEncoding : std::uint8_t { F32 };
-enum class StreamDelivery : std::uint8_t { Latest };
-
-}  // namespace tweend::commands
-
-namespace tweend::protocol {
-
-template <>
-struct EnumNames<commands::StreamKind> {
-  static constexpr std::array<std::string_view, 1> kNames{"vertices"};
-};
-template <>
-struct EnumNames<commands::StreamEncoding> {
-  static constexpr std::array<std::string_view, 1> kNames{"f32"};
-};
-template <>
-struct EnumNames<commands::StreamDelivery> {
-  static constexpr std::array<std::string_view, 1> kNames{"latest"};
-};
-
-}  // namespace tweend::protocol
+#include "server/commands/stream_types.hpp"
 
 namespace tweend::commands {
 namespace {
 
-constexpr protocol::Range kRate{.min = 0.0, .max = 240.0, .min_excluded = true};
 constexpr double kDefaultRate = 30.0;
-
-struct OpenParams {
-  static constexpr std::string_view kName = "StreamOpenParams";
-  StreamKind kind = StreamKind::Vertices;
-  std::optional<std::string> scene;
-  std::optional<std::string> actor;
-  std::optional<double> rate;
-  std::optional<StreamDelivery> delivery;
-  std::optional<StreamEncoding> encoding;
-  static void describe(FieldList<OpenParams>& f) {
-    using T = OpenParams;
-    f.add<&T::kind>("kind", "What to send.");
-    add_scene_field(f);
-    add_actor_field(f);
-    f.add<&T::rate>("rate", "Packets a second; 30 if left out.", kRate);
-    f.add<&T::delivery>("delivery", "latest: a slow reader skips.");
-    f.add<&T::encoding>("encoding", "How a packet is written.");
-  }
-};
 
 struct BoundsState {
   static constexpr std::string_view kName = "Bounds";
@@ -65,28 +23,34 @@ struct BoundsState {
   }
 };
 
-struct VerticesLayout {
-  static constexpr std::string_view kName = "VerticesLayout";
-  std::uint64_t vertices = 0;
-  protocol::Base64Indices indices;
+/// What a packet's bytes mean: the first four of vertices, the others of frames.
+struct StreamLayout {
+  static constexpr std::string_view kName = "StreamLayout";
+  std::optional<std::uint64_t> vertices;
+  std::optional<protocol::Base64Indices> indices;
   std::optional<protocol::Base64Floats> uvs;
-  BoundsState bounds;
-  static void describe(FieldList<VerticesLayout>& f) {
-    using T = VerticesLayout;
+  std::optional<BoundsState> bounds;
+  std::optional<std::uint64_t> width, height;
+  std::optional<std::string> codec;
+  static void describe(FieldList<StreamLayout>& f) {
+    using T = StreamLayout;
     f.add<&T::vertices>("vertices", "How many.");
     f.add<&T::indices>("indices_base64", "Little-endian uint32, three a triangle.");
     f.add<&T::uvs>("uvs_base64", "Little-endian float32, u and v of each vertex.");
     f.add<&T::bounds>("bounds", "Of the keyframes of the player's clip.");
+    f.add<&T::width>("width", "Pixels.");
+    f.add<&T::height>("height", "Pixels.");
+    f.add<&T::codec>("codec", "jpeg, png or rgba.");
   }
 };
 
 struct OpenResult {
   static constexpr std::string_view kName = "StreamOpened";
   std::uint64_t stream = 0;
-  VerticesLayout layout;
+  StreamLayout layout;
   static void describe(FieldList<OpenResult>& f) {
     f.add<&OpenResult::stream>("stream", "Its number on this connection.");
-    f.add<&OpenResult::layout>("layout", "What a packet's numbers mean.");
+    f.add<&OpenResult::layout>("layout", "What a packet's bytes mean.");
   }
 };
 
@@ -94,9 +58,12 @@ struct UpdateParams {
   static constexpr std::string_view kName = "StreamUpdateParams";
   std::uint64_t stream = 0;
   std::optional<double> rate;
+  Nullable<OwnCamera> camera;
   static void describe(FieldList<UpdateParams>& f) {
     f.add<&UpdateParams::stream>("stream", "Its number.");
     f.add<&UpdateParams::rate>("rate", "Packets a second.", kRate);
+    f.add<&UpdateParams::camera>("camera",
+                                 "Of frames: where to look from, in place of what was said before; null: the scene's.");
   }
 };
 
@@ -118,13 +85,32 @@ BoundsState bounds_of(const model::Actor& actor, const model::Clip& clip) {
   return {all.min, all.max};
 }
 
-/// For a worker: a large mesh's indices take a while to print.
-std::string open_result(std::uint32_t stream, const model::Actor& actor, const model::Clip& clip) {
+StreamLayout vertices_layout(const model::Actor& actor, const model::Clip& clip) {
   const model::Mesh& mesh = *actor.mesh;
-  OpenResult result{stream,
-                    {mesh.vertex_count(), {{mesh.indices().begin(), mesh.indices().end()}}, {}, bounds_of(actor, clip)}};
-  if (!mesh.texcoords().empty()) result.layout.uvs = protocol::Base64Floats{{mesh.texcoords().begin(), mesh.texcoords().end()}};
-  return protocol::encode(result);
+  StreamLayout layout;
+  layout.vertices = mesh.vertex_count();
+  layout.indices = protocol::Base64Indices{{mesh.indices().begin(), mesh.indices().end()}};
+  if (!mesh.texcoords().empty()) layout.uvs = protocol::Base64Floats{{mesh.texcoords().begin(), mesh.texcoords().end()}};
+  layout.bounds = bounds_of(actor, clip);
+  return layout;
+}
+
+StreamLayout frames_layout(const streams::FramesSpec& spec) {
+  constexpr std::array<const char*, 3> kCodecs{"jpeg", "png", "rgba"};
+  StreamLayout layout;
+  layout.width = spec.size.width;
+  layout.height = spec.size.height;
+  layout.codec = kCodecs[static_cast<std::size_t>(spec.encoding)];
+  return layout;
+}
+
+/// For a worker: a large mesh's indices take a while to print.
+std::string open_result(std::uint32_t stream, const streams::StreamKey& key, const stage::SceneView& view) {
+  if (const auto* frames = std::get_if<streams::FramesSpec>(&key.what)) {
+    return protocol::encode(OpenResult{stream, frames_layout(*frames)});
+  }
+  const model::ActorPtr actor = view.scene->find_actor(std::get<streams::VerticesSpec>(key.what).actor);
+  return protocol::encode(OpenResult{stream, vertices_layout(*actor, *stage::clip_of(*actor, *view.find_player(actor->name)))});
 }
 
 void subscribe_later(const std::shared_ptr<Conversation>& conversation, std::uint32_t stream) {
@@ -141,49 +127,44 @@ void unsubscribe_later(const std::shared_ptr<Conversation>& conversation, const 
       [&hub = services.hub, key, peer = conversation->peer(), stream] { hub.unsubscribe(key, peer.get(), stream); });
 }
 
-void open_stream(const OpenParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
-  const Services& services = conversation->services();
-  if (const std::size_t most = services.limits.streams_per_connection; conversation->streams().size() >= most) {
-    return done(
-        {fail(ErrorCode::Limit, fmt::format("expected at most {} streams a connection, found as many; close one first", most)),
-         {}});
-  }
-  const std::string scene = scene_or_main(p.scene);
-  const stage::SceneViewPtr view = services.stage.view()->find(scene);
-  if (!view) return done({no_such_scene(scene), {}});
-  const auto actor = find_actor(*view->scene, p.actor);
-  if (!actor) return done({actor.error(), {}});
-  const model::ClipPtr clip = *find_clip(**actor, std::nullopt, view);
-
-  const std::uint32_t stream = conversation->next_stream();
-  conversation->streams()[stream] = {scene, (*actor)->name, p.rate.value_or(kDefaultRate)};
-  add(services.metrics.streams);
-  services.workers.post([conversation, stream, actor = *actor, clip, done] {
-    conversation->to_network()([conversation, stream, text = open_result(stream, *actor, *clip), done] {
-      if (conversation->closed()) return;
-      // The producer hears of the reader when the answer is on its way: the first packet then comes right after it.
-      done({text, [conversation, stream] {
-              if (conversation->streams().contains(stream)) subscribe_later(conversation, stream);
-            }});
-    });
-  });
-}
-
 Error no_such_stream(std::uint64_t stream) {
   return fail(ErrorCode::NotFound, fmt::format("expected the number of an open stream of this connection, found {}", stream),
               "params.stream");
+}
+
+/// What the stream's key becomes.
+Result<streams::StreamKey> updated_key(const UpdateParams& p, streams::StreamKey key, const Services& services) {
+  key.rate = p.rate.value_or(key.rate);
+  if (!p.camera) return key;
+  auto* frames = std::get_if<streams::FramesSpec>(&key.what);
+  if (frames == nullptr) {
+    return fail(ErrorCode::InvalidParams, "expected camera with a stream of frames, found it with one of vertices",
+                "params.camera");
+  }
+  frames->camera.reset();
+  if (!*p.camera) return key;
+  const stage::SceneViewPtr view = services.stage.view()->find(key.scene);
+  if (!view) return no_such_scene(key.scene);
+  TWEEND_TRY(check_own_camera(**p.camera, *view->scene));
+  frames->camera = (*p.camera)->request();
+  return key;
 }
 
 void update_stream(const UpdateParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   const auto stream = static_cast<std::uint32_t>(p.stream);
   const auto at = conversation->streams().find(stream);
   if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});
-  if (!p.rate || *p.rate == at->second.rate) return done({protocol::encode(EmptyResult{}), {}});
-  unsubscribe_later(conversation, at->second, stream);
-  at->second.rate = *p.rate;
-  done({protocol::encode(EmptyResult{}), [conversation, stream] {
-          if (conversation->streams().contains(stream)) subscribe_later(conversation, stream);
-        }});
+  const Services& services = conversation->services();
+  const Result<streams::StreamKey> key = updated_key(p, at->second, services);
+  if (!key) return done({key.error(), {}});
+  if (*key != at->second) {
+    const std::weak_ptr<streams::PacketSink> sink(conversation->peer());
+    services.stage.post([&hub = services.hub, from = at->second, to = *key, sink, stream] {
+      hub.retune(from, to, {sink, stream});
+    });
+    at->second = *key;
+  }
+  done({protocol::encode(EmptyResult{}), {}});
 }
 
 void close_stream(const CloseParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
@@ -197,12 +178,90 @@ void close_stream(const CloseParams& p, const std::shared_ptr<Conversation>& con
   done({protocol::encode(EmptyResult{}), {}});
 }
 
+Status only_of_frames(bool given, std::string_view name) {
+  if (!given) return {};
+  return fail(ErrorCode::InvalidParams, fmt::format("expected {} with a stream of frames, found it with one of vertices", name),
+              std::string(name));
+}
+
+streams::FrameEncoding frame_encoding(StreamEncoding encoding) {
+  return encoding == StreamEncoding::Png    ? streams::FrameEncoding::Png
+         : encoding == StreamEncoding::Rgba ? streams::FrameEncoding::Rgba
+                                            : streams::FrameEncoding::Jpeg;
+}
+
 }  // namespace
 
+Status StreamOpenParams::check() const {
+  const bool f32 = encoding.value_or(StreamEncoding::F32) == StreamEncoding::F32;
+  if (kind == StreamKind::Frames) {
+    if (!encoding || !f32) return {};
+    return fail(ErrorCode::InvalidParams, "expected jpeg, png or rgba with a stream of frames, found f32", "encoding");
+  }
+  if (!f32)
+    return fail(ErrorCode::InvalidParams, "expected f32 with a stream of vertices, found an encoding of frames", "encoding");
+  TWEEND_TRY(only_of_frames(width.has_value(), "width"));
+  TWEEND_TRY(only_of_frames(height.has_value(), "height"));
+  TWEEND_TRY(only_of_frames(quality.has_value(), "quality"));
+  return only_of_frames(camera.has_value(), "camera");
+}
+
+Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::StageView& view, const Services& services) {
+  streams::StreamKey key{scene_or_main(p.scene), p.rate.value_or(kDefaultRate), {}};
+  const stage::SceneViewPtr scene = view.find(key.scene);
+  if (!scene) return no_such_scene(key.scene);
+  if (p.kind == StreamKind::Vertices) {
+    TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
+    key.what = streams::VerticesSpec{actor->name};
+    return key;
+  }
+  streams::FramesSpec frames;
+  if (p.actor) {
+    TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
+    frames.actor = actor->name;
+  }
+  TWEEND_ASSIGN(frames.size, frame_size(p.width, p.height, services.limits));
+  frames.encoding = frame_encoding(p.encoding.value_or(StreamEncoding::Jpeg));
+  // Only of a JPEG is there a quality to tell producers apart by.
+  if (frames.encoding == streams::FrameEncoding::Jpeg) frames.quality = static_cast<int>(p.quality.value_or(kDefaultQuality));
+  if (p.camera) {
+    TWEEND_TRY(check_own_camera(*p.camera, *scene->scene));
+    frames.camera = p.camera->request();
+  }
+  if (const auto& device = services.renderer.device(); !device) return device.error();
+  key.what = std::move(frames);
+  return key;
+}
+
+void open_stream(const StreamOpenParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
+  const Services& services = conversation->services();
+  if (const std::size_t most = services.limits.streams_per_connection; conversation->streams().size() >= most) {
+    return done(
+        {fail(ErrorCode::Limit, fmt::format("expected at most {} streams a connection, found as many; close one first", most)),
+         {}});
+  }
+  const stage::StageViewPtr view = services.stage.view();
+  const Result<streams::StreamKey> key = stream_key(p, *view, services);
+  if (!key) return done({key.error(), {}});
+  const std::uint32_t stream = conversation->next_stream();
+  conversation->streams()[stream] = *key;
+  add(services.metrics.streams);
+  services.workers.post([conversation, stream, key = *key, view = view->find(key->scene), done] {
+    conversation->to_network()([conversation, stream, text = open_result(stream, key, *view), done] {
+      if (conversation->closed()) return;
+      // The producer hears of the reader when the answer is on its way: the first packet then comes right after it.
+      done({text, [conversation, stream] {
+              if (conversation->streams().contains(stream)) subscribe_later(conversation, stream);
+            }});
+    });
+  });
+}
+
 void add_stream_commands(std::vector<Command>& t) {
-  t.push_back(connection_command<OpenResult, OpenParams, &open_stream>("stream.open",
-                                                                       "Be sent what an actor shows, packet by packet."));
-  t.push_back(connection_command<EmptyResult, UpdateParams, &update_stream>("stream.update", "Change a stream's rate."));
+  t.push_back(connection_command<OpenResult, StreamOpenParams, &open_stream>("stream.open",
+                                                                             "Be sent what is shown, packet by packet."));
+  t.push_back(
+      connection_command<EmptyResult, UpdateParams, &update_stream>("stream.update", "Change a stream's rate or camera."));
   t.push_back(connection_command<EmptyResult, CloseParams, &close_stream>("stream.close", "End a stream."));
 }
 

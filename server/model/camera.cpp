@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/ext/matrix_clip_space.hpp>
+#include <glm/ext/matrix_transform.hpp>
 #include <glm/geometric.hpp>
 
 namespace tweend::model {
@@ -13,18 +15,59 @@ Camera orbit(Camera camera, float azimuth, float elevation, float distance) noex
   return camera;
 }
 
-Camera fit(Camera camera, const Sphere& sphere) noexcept {
+Camera fit(Camera camera, const Sphere& sphere, float aspect) noexcept {
   constexpr float kMargin = 1.05F;
   const float radius = std::max(sphere.radius, 1e-3F) * kMargin;
   glm::vec3 back = camera.eye - camera.target;
   back = glm::length(back) > 0.0F ? glm::normalize(back) : glm::vec3(0.0F, 0.0F, 1.0F);
   // The cone of the field of view touches the ball at this distance (sin, not tan: a ball, not a disc).
-  const float distance = radius / std::sin(camera.fov_y / 2.0F);
+  const float half_y = camera.fov_y / 2.0F;
+  const float half = aspect < 1.0F ? std::atan(std::tan(half_y) * aspect) : half_y;
+  const float distance = radius / std::sin(half);
   camera.target = sphere.center;
   camera.eye = sphere.center + distance * back;
   camera.near = std::max((distance - radius) * 0.1F, distance * 1e-3F);
   camera.far = (distance + radius) * 10.0F;
   return camera;
+}
+
+namespace {
+
+Status check(const Camera& camera) {
+  const glm::vec3 forward = camera.target - camera.eye;
+  if (!(glm::length(forward) > 0.0F)) {
+    return fail(ErrorCode::InvalidParams, "expected eye and target to be apart, found them at one place", "eye");
+  }
+  if (!(glm::length(glm::cross(glm::normalize(forward), camera.up)) > 1e-6F)) {
+    return fail(ErrorCode::InvalidParams, "expected up to point aside from the view, found it along it (or zero)", "up");
+  }
+  if (!(camera.near < camera.far)) return fail(ErrorCode::InvalidParams, "expected near to be less than far", "near");
+  return {};
+}
+
+}  // namespace
+
+Result<Camera> place(Camera camera, const CameraRequest& request, const std::optional<Sphere>& visible, float aspect) {
+  camera.eye = request.eye.value_or(camera.eye);
+  camera.target = request.target.value_or(camera.target);
+  camera.up = request.up.value_or(camera.up);
+  camera.fov_y = request.fov_y.value_or(camera.fov_y);
+  if (request.orbit) {
+    camera.target = request.orbit->target.value_or(camera.target);
+    const float distance = request.orbit->distance.value_or(glm::length(camera.eye - camera.target));
+    camera = orbit(camera, request.orbit->azimuth, request.orbit->elevation, distance);
+  }
+  if (request.fit && visible) camera = fit(camera, *visible, aspect);
+  camera.near = request.near.value_or(camera.near);
+  camera.far = request.far.value_or(camera.far);
+  TWEEND_TRY(check(camera));
+  return camera;
+}
+
+glm::mat4 view_from_world(const Camera& camera) noexcept { return glm::lookAt(camera.eye, camera.target, camera.up); }
+
+glm::mat4 clip_from_view(const Camera& camera, float aspect) noexcept {
+  return glm::perspective(camera.fov_y, aspect, camera.near, camera.far);
 }
 
 }  // namespace tweend::model

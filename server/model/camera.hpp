@@ -1,6 +1,10 @@
 #pragma once
 
+#include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
+#include <optional>
+
+#include "server/base/result.hpp"
 
 namespace tweend::model {
 
@@ -25,8 +29,39 @@ struct Sphere {
 /// a the azimuth from +Z towards +X, e the elevation above the XZ plane (radians).
 [[nodiscard]] Camera orbit(Camera camera, float azimuth, float elevation, float distance) noexcept;
 
-/// Keeps the direction and moves eye and target so that the whole ball is in view at any aspect ratio from 1:1 up;
+/// Keeps the direction and moves eye and target so that the whole ball is in view in a picture of this shape;
 /// near and far then bracket it generously. A ball of no radius is given one.
-[[nodiscard]] Camera fit(Camera camera, const Sphere& sphere) noexcept;
+/// @param aspect  width / height; a tall picture's narrower side counts
+[[nodiscard]] Camera fit(Camera camera, const Sphere& sphere, float aspect = 1.0F) noexcept;
+
+struct OrbitRequest {
+  float azimuth = 0.0F;           ///< radians
+  float elevation = 0.0F;         ///< radians
+  std::optional<float> distance;  ///< metres; empty: as it is
+  std::optional<glm::vec3> target;
+  bool operator==(const OrbitRequest&) const = default;
+};
+
+/// What is asked of a camera; what is left out stays as it is.
+struct CameraRequest {
+  std::optional<glm::vec3> eye, target, up;
+  std::optional<float> fov_y, near, far;
+  std::optional<OrbitRequest> orbit;
+  bool fit = false;
+  bool operator==(const CameraRequest&) const = default;
+};
+
+/// The camera as asked. Fitting comes last but for near and far, which are taken as they are given.
+/// @param visible  what `fit` brings into view; without it `fit` changes nothing
+/// @param aspect   of the picture to be fitted into; that of a square fits every wide one
+/// @return InvalidParams, path "eye", "up" or "near", where it could show nothing
+[[nodiscard]] Result<Camera> place(Camera camera, const CameraRequest& request, const std::optional<Sphere>& visible,
+                                   float aspect = 1.0F);
+
+/// From world to view space: x right, y up, looking along -z.
+[[nodiscard]] glm::mat4 view_from_world(const Camera& camera) noexcept;
+/// The perspective projection to OpenGL's clip space (-w <= z <= w).
+/// @param aspect  width / height
+[[nodiscard]] glm::mat4 clip_from_view(const Camera& camera, float aspect) noexcept;
 
 }  // namespace tweend::model

@@ -38,6 +38,8 @@ class VertexKey {
   [[nodiscard]] std::span<const float> normals() const noexcept;
   /// Empty where the mesh has no texture coordinates.
   [[nodiscard]] std::span<const float> tangents() const noexcept;
+  /// All of it in one piece: positions, normals, tangents if there are any.
+  [[nodiscard]] std::span<const float> block() const noexcept { return block_; }
   [[nodiscard]] animation::VertexAttributes attributes() const noexcept;
   [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
   [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }

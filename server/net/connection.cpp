@@ -32,6 +32,7 @@ void tune_socket(Tcp::socket& socket) {
 
 Connection::Connection(Tcp::socket socket, Framing framing, Metrics& metrics)
     : socket_(std::move(socket)),
+      framing_(framing),
       outbox_(framing, metrics),
       metrics_(metrics),
       progress_(socket_.get_executor(), asio::steady_timer::time_point::max()),
@@ -119,7 +120,10 @@ void Connection::offer(std::uint32_t stream, const streams::PacketPtr& packet) {
 }
 
 void Connection::ended(std::uint32_t stream, const std::string& reason) {
-  if (open_) conversation_->stream_ended(stream, reason);
+  if (!open_) return;
+  conversation_->stream_ended(stream, reason);
+  // Of an answer that is nothing but pictures, this was the end; there is no other way to say so.
+  if (framing_ == Framing::Multipart) close_later();
 }
 
 void Connection::pump() {

@@ -54,6 +54,7 @@ class Connection final : public commands::Peer, public std::enable_shared_from_t
   void close_later();
 
   Tcp::socket socket_;
+  const Framing framing_;
   Outbox outbox_;
   Metrics& metrics_;
   std::shared_ptr<commands::Conversation> conversation_;

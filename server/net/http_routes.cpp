@@ -13,6 +13,7 @@
 #include "protocol/utf8.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
+#include "server/net/picture_routes.hpp"
 #include "server/net/same_origin.hpp"
 
 namespace tweend::net {
@@ -23,6 +24,7 @@ namespace http = boost::beast::http;
 
 constexpr std::string_view kText = "text/plain; charset=utf-8";
 constexpr std::string_view kJson = "application/json";
+constexpr std::string_view kPictureStreamType = "multipart/x-mixed-replace; boundary=tweend-frame";
 
 /// The client of one POST /rpc: it gets its answers and nothing else.
 class RpcPeer final : public commands::Peer {
@@ -87,7 +89,11 @@ HttpResponse answer_get(const HttpRequest& request, std::string_view path, Sessi
   if (path == "/healthz") return http_answer(request, 200, kText, "ok\n");
   if (path == "/readyz") {
     // Documents are loaded before the port opens; while stopping, others should be asked.
-    return context.stopping ? http_answer(request, 503, kText, "stopping\n") : http_answer(request, 200, kText, "ready\n");
+    if (context.stopping) return http_answer(request, 503, kText, "stopping\n");
+    const render::RenderThread& renderer = context.services.renderer;
+    if (renderer.wanted() && !renderer.device())
+      return http_answer(request, 503, kText, renderer.device().error().message + "\n");
+    return http_answer(request, 200, kText, "ready\n");
   }
   if (path == "/metrics") {
     return http_answer(request, 200, "text/plain; version=0.0.4; charset=utf-8", context.services.metrics.prometheus_text());
@@ -96,7 +102,9 @@ HttpResponse answer_get(const HttpRequest& request, std::string_view path, Sessi
   if (const WebFile* file = context.web.find(path)) return answer_file(request, *file);
   if (path == "/") return http_answer(request, 200, kText, welcome());
   return http_answer(request, 404, kText,
-                     fmt::format("expected /, /healthz, /readyz, /metrics, /openrpc.json, /rpc or /ws, found {}\n", path));
+                     fmt::format("expected /, /healthz, /readyz, /metrics, /openrpc.json, /rpc, /ws, /scenes/SCENE/frame.png, "
+                                 "frame.jpg or stream.mjpg, found {}\n",
+                                 path));
 }
 
 }  // namespace
@@ -144,6 +152,11 @@ asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& 
     auto response = http_answer(request, 405, kText, "expected GET or HEAD\n");
     response.set(http::field::allow, "GET, HEAD");
     co_return response;
+  }
+  if (const auto scene = parse_scene_path(path)) {
+    if (scene->leaf == "frame.png" || scene->leaf == "frame.jpg") co_return co_await answer_frame(request, *scene, context);
+    // A GET of it never comes here: it becomes a session of its own.
+    if (scene->leaf == "stream.mjpg") co_return http_answer(request, 200, kPictureStreamType, {});
   }
   co_return answer_get(request, path, context);
 }

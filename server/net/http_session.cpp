@@ -9,9 +9,11 @@
 #include <cstring>
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "protocol/envelope.hpp"
 #include "server/net/http_routes.hpp"
+#include "server/net/picture_routes.hpp"
 #include "server/net/websocket_session.hpp"
 
 namespace tweend::net {
@@ -72,28 +74,47 @@ asio::awaitable<boost::system::error_code> read_request(beast::tcp_stream& strea
   co_return error;
 }
 
-/// The requests of one client; true: the last one asks for a WebSocket and may have it.
-asio::awaitable<bool> serve_requests(beast::tcp_stream& stream, beast::flat_buffer& buffer, SessionContext& context,
+/// What a connection becomes once its requests have been answered.
+struct Upgrade {};  ///< a WebSocket: the last request asks for it and may have it
+using Next = std::variant<std::monostate, Upgrade, commands::StreamOpenParams>;
+
+bool is_websocket(const HttpRequest& request) {
+  return beast::websocket::is_upgrade(request) && request.target().substr(0, request.target().find('?')) == "/ws";
+}
+
+/// Whether the request asks for pictures without end.
+std::optional<ScenePath> picture_stream(const HttpRequest& request) {
+  if (request.method() != http::verb::get) return std::nullopt;
+  auto path = parse_scene_path(request.target().substr(0, request.target().find('?')));
+  return path && path->leaf == "stream.mjpg" ? path : std::nullopt;
+}
+
+/// The requests of one client, one after another.
+asio::awaitable<Next> serve_requests(beast::tcp_stream& stream, beast::flat_buffer& buffer, SessionContext& context,
                                      HttpRequest& request) {
   Metrics& metrics = context.services.metrics;
   for (;;) {
     request = {};
     if (const auto error = co_await read_request(stream, buffer, context.services.limits, metrics, request); error) {
       if (const auto answer = answer_to_failure(error, context.services.limits)) co_await write(stream, *answer, metrics);
-      co_return false;
+      co_return Next();
     }
     stream.expires_never();  // a command takes as long as it takes
     const std::string refusal = refuse_request(request, context);
     if (!refusal.empty()) {
       if (!co_await write(stream, http_answer(request, 403, "text/plain; charset=utf-8", refusal + "\n"), metrics))
-        co_return false;
-    } else if (beast::websocket::is_upgrade(request) && request.target().substr(0, request.target().find('?')) == "/ws") {
-      co_return true;
+        co_return Next();
+    } else if (is_websocket(request)) {
+      co_return Upgrade();
+    } else if (const auto path = picture_stream(request)) {
+      auto prepared = prepare_stream(request, *path, context);
+      if (auto* params = std::get_if<commands::StreamOpenParams>(&prepared)) co_return std::move(*params);
+      if (!co_await write(stream, std::get<HttpResponse>(prepared), metrics)) co_return Next();
     } else if (!co_await write(stream, co_await route(request, context), metrics)) {
-      co_return false;
+      co_return Next();
     }
     // While the server stops, reading ends by itself behind the requests that have arrived.
-    if (!request.keep_alive()) co_return false;
+    if (!request.keep_alive()) co_return Next();
   }
 }
 
@@ -105,15 +126,19 @@ asio::awaitable<void> run_http_session(Tcp::socket socket, std::string received,
   std::memcpy(buffer.prepare(received.size()).data(), received.data(), received.size());
   buffer.commit(received.size());
   HttpRequest request;
-  bool upgrade = false;
+  Next next;
   {
     const Registered registered(context, [&stream] {
       boost::system::error_code ignored;
       stream.socket().shutdown(Tcp::socket::shutdown_receive, ignored);
     });
-    upgrade = co_await serve_requests(stream, buffer, context, request);
+    next = co_await serve_requests(stream, buffer, context, request);
   }
-  if (upgrade) {
+  if (auto* pictures = std::get_if<commands::StreamOpenParams>(&next)) {
+    co_await run_picture_session(stream.release_socket(), std::move(*pictures), context);
+    co_return;
+  }
+  if (std::holds_alternative<Upgrade>(next)) {
     // A client may not send frames before it has read the answer (RFC 6455, 4.1): what came behind the request is dropped.
     co_await run_websocket_session(stream.release_socket(), std::move(request), context);
     co_return;

@@ -10,6 +10,8 @@ namespace tweend::net {
 namespace {
 
 constexpr std::size_t kMessagesAtOnce = 32;
+constexpr std::string_view kPartEnd = "\r\n--tweend-frame\r\n";
+static_assert(kPartEnd.substr(4, kPartEnd.size() - 6) == kMultipartBoundary);
 
 constexpr unsigned char kTextFrame = 0x81;    // FIN, opcode 1
 constexpr unsigned char kBinaryFrame = 0x82;  // FIN, opcode 2
@@ -26,12 +28,12 @@ std::size_t write_frame_header(unsigned char first, std::size_t bytes, char* out
 }  // namespace
 
 std::size_t Outbox::Item::body_bytes() const noexcept {
-  return packet ? packet->payload_bytes().size() : shared ? shared->size() : text.size();
+  return packet ? packet->payload.bytes().size() : shared ? shared->size() : text.size();
 }
 
 void Outbox::frame_text(Item& item) const {
   if (framing_ == Framing::Line) {
-    item.line_end = true;
+    item.suffix = "\n";
   } else {
     item.prefix_size = write_frame_header(kTextFrame, item.body_bytes(), item.prefix.data());
   }
@@ -49,6 +51,7 @@ void Outbox::frame_packet(Item& item) {
   header.flags = static_cast<std::uint8_t>(header.flags | item.carried_flags);
   numbers.last = header.sequence;
 
+  if (framing_ == Framing::Multipart) return frame_part(item);
   const std::size_t bytes = protocol::kPacketHeaderBytes + header.payload_bytes;
   char* const begin = item.prefix.data();
   char* at = begin;
@@ -65,6 +68,14 @@ void Outbox::frame_packet(Item& item) {
   item.prefix_size = static_cast<std::size_t>(at - begin) + encoded.size();
 }
 
+/// The boundary stands behind each part, not before: a browser shows a picture when it sees the next boundary.
+void Outbox::frame_part(Item& item) {
+  const char* const end = fmt::format_to(item.prefix.data(), "Content-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n",
+                                         item.packet->header.payload_bytes);
+  item.prefix_size = static_cast<std::size_t>(end - item.prefix.data());
+  item.suffix = kPartEnd;
+}
+
 void Outbox::push_control(Item item) {
   control_bytes_ += item.body_bytes();
   if (item.event) event_bytes_ += item.body_bytes();
@@ -72,6 +83,7 @@ void Outbox::push_control(Item item) {
 }
 
 void Outbox::push_text(std::string text) {
+  if (framing_ == Framing::Multipart) return;
   Item item;
   item.text = std::move(text);
   frame_text(item);
@@ -79,6 +91,7 @@ void Outbox::push_text(std::string text) {
 }
 
 void Outbox::push_shared(std::shared_ptr<const std::string> text) {
+  if (framing_ == Framing::Multipart) return;
   Item item;
   item.shared = std::move(text);
   item.event = true;
@@ -87,6 +100,7 @@ void Outbox::push_shared(std::shared_ptr<const std::string> text) {
 }
 
 void Outbox::push_after_packets(std::shared_ptr<const std::string> text) {
+  if (framing_ == Framing::Multipart) return;
   if (data_.empty()) return push_shared(std::move(text));
   Item item;
   item.shared = std::move(text);
@@ -124,16 +138,15 @@ void Outbox::forget_stream(std::uint32_t stream) {
 }
 
 void Outbox::add_buffers(const Item& item) {
-  static constexpr char kLineEnd = '\n';
   if (item.prefix_size > 0) buffers_.emplace_back(item.prefix.data(), item.prefix_size);
   if (item.packet) {
-    const auto payload = item.packet->payload_bytes();
+    const auto payload = item.packet->payload.bytes();
     buffers_.emplace_back(payload.data(), payload.size());
   } else {
     const std::string& text = item.shared ? *item.shared : item.text;
     buffers_.emplace_back(text.data(), text.size());
   }
-  if (item.line_end) buffers_.emplace_back(&kLineEnd, 1);
+  if (!item.suffix.empty()) buffers_.emplace_back(item.suffix.data(), item.suffix.size());
 }
 
 std::span<const boost::asio::const_buffer> Outbox::take() {

@@ -9,6 +9,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "server/base/metrics.hpp"
@@ -20,7 +21,11 @@ namespace tweend::net {
 enum class Framing : std::uint8_t {
   Line,       ///< text and '\n'; a packet behind the line that announces it
   WebSocket,  ///< RFC 6455 frames, unmasked: text messages and binary packets
+  Multipart,  ///< RFC 2046 parts of an HTTP answer, one a picture; there is no place for messages, which are dropped
 };
+
+/// What stands between the parts of a Multipart answer.
+inline constexpr std::string_view kMultipartBoundary = "tweend-frame";
 
 /// What waits to be written to one client, in two lanes: answers and notifications first, then packets. A packet that is
 /// still waiting when a newer one of its stream comes is replaced by it, so that a slow reader skips and never falls behind.
@@ -62,7 +67,7 @@ class Outbox {
     streams::PacketPtr packet;
     std::uint32_t stream = 0;
     std::uint8_t carried_flags = 0;  ///< of packets that this one has replaced
-    bool line_end = false;
+    std::string_view suffix;         ///< of static storage
     bool event = false;
 
     [[nodiscard]] std::size_t body_bytes() const noexcept;
@@ -76,6 +81,7 @@ class Outbox {
 
   void frame_text(Item& item) const;
   void frame_packet(Item& item);
+  static void frame_part(Item& item);
   void push_control(Item item);
   void add_buffers(const Item& item);
 

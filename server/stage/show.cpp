@@ -23,19 +23,34 @@ ActorShow show_actor(const model::ActorPtr& actor, const Player& player, ClockUs
   const model::ClipPtr clip = clip_of(*actor, player);
   const PlayRange range = player.range_of(*clip);
   const PlayerReading reading = player.read(range, at_us);
-  ActorShow show{actor, clip, reading.time_s, actor->settings.spin_rad_s * reading.played_s, false, player.jumps << 32U};
+  ActorShow show{actor, clip, reading.time_s, actor->settings.spin_rad_s * reading.played_s, false, false, player.jumps << 32U};
   show.moving = reading.playing && range.length_s() > 0.0 && player.speed != 0.0;
+  show.turning = reading.playing && actor->settings.spin_rad_s != 0.0;
   show.continuity += static_cast<std::uint64_t>(reading.wraps);
   return show;
 }
 
 Show show_at(const SceneView& view, ClockUs at_us) {
-  Show show{view.scene, at_us, {}};
-  show.actors.reserve(view.scene->actors.size());
-  for (std::size_t i = 0; i < view.scene->actors.size(); ++i) {
-    show.actors.push_back(show_actor(view.scene->actors[i], (*view.players)[i], at_us));
-  }
+  Show show;
+  show_at(view, at_us, show);
   return show;
+}
+
+void show_at(const SceneView& view, ClockUs at_us, Show& out) {
+  out.scene = view.scene;
+  out.at_us = at_us;
+  out.actors.clear();
+  for (std::size_t i = 0; i < view.scene->actors.size(); ++i) {
+    out.actors.push_back(show_actor(view.scene->actors[i], (*view.players)[i], at_us));
+  }
+}
+
+void show_time(const SceneView& view, double time_s, ClockUs now_us, Show& out) {
+  show_at(view, now_us, out);
+  for (ActorShow& show : out.actors) {
+    show.time_s = std::clamp(time_s, 0.0, show.clip->duration_s());
+    show.spin_angle_rad = 0.0;
+  }
 }
 
 }  // namespace tweend::stage

@@ -40,6 +40,7 @@ struct ActorShow {
   double time_s = 0.0;          ///< of the clip
   double spin_angle_rad = 0.0;  ///< about the actor's +Y
   bool moving = false;          ///< the time changes while the clock runs
+  bool turning = false;         ///< the spin does
   /// Changes exactly where what is shown may jump though time does not: seeks, clip changes, wraps of an open clip.
   std::uint64_t continuity = 0;
 };
@@ -52,7 +53,12 @@ struct Show {
 };
 
 [[nodiscard]] ActorShow show_actor(const model::ActorPtr& actor, const Player& player, ClockUs at_us) noexcept;
+/// What is shown at a reading of the clock.
 [[nodiscard]] Show show_at(const SceneView& view, ClockUs at_us);
+/// The same, into a show that keeps its memory.
+void show_at(const SceneView& view, ClockUs at_us, Show& out);
+/// Each actor's current clip at `time_s`, clamped to the clip; no spin: a `time` stands outside of playing.
+void show_time(const SceneView& view, double time_s, ClockUs now_us, Show& out);
 
 /// The clip a player is on; it always has one.
 [[nodiscard]] model::ClipPtr clip_of(const model::Actor& actor, const Player& player) noexcept;

@@ -6,66 +6,98 @@
 #include <set>
 #include <utility>
 
-namespace tweend::streams {
+#include "server/streams/frame_content.hpp"
+#include "server/streams/vertices_content.hpp"
 
-Hub::Hub(stage::Stage& stage, WorkerPool& workers, Post deliver, Metrics& metrics)
-    : stage_(stage), workers_(workers), mailbox_(std::move(deliver)), metrics_(metrics) {}
+namespace tweend::streams {
+namespace {
+
+/// Who asks for fewer packets a second than this hears of an end before seeing it: others are not kept waiting.
+constexpr double kSlowRate = 5.0;
+
+}  // namespace
+
+Hub::Hub(stage::Stage& stage, WorkerPool& workers, render::RenderThread& renderer, Post deliver, Metrics& metrics)
+    : stage_(stage), workers_(workers), renderer_(renderer), mailbox_(std::move(deliver)), metrics_(metrics) {}
+
+Hub::Producers::iterator Hub::find(const StreamKey& key) {
+  return std::find_if(producers_.begin(), producers_.end(), [&key](const auto& p) { return p->key() == key; });
+}
+
+/// Null: what it asks for is not there.
+std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key, const stage::SceneViewPtr& view) {
+  const Producer::Environment environment{stage_.strand(), mailbox_, metrics_, [this] { progressed(); }};
+  auto producer =
+      std::make_shared<Producer>(key, ++last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
+        if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
+          return std::make_shared<FrameContent>(*frames, stage_.strand(), workers_, renderer_, owner);
+        }
+        return std::make_shared<VerticesContent>(std::get<VerticesSpec>(key.what), key.scene, stage_.strand(), workers_, owner);
+      });
+  return producer->follow(view) ? producer : nullptr;
+}
 
 void Hub::subscribe(const StreamKey& key, Subscription subscription) {
+  const auto at = find(key);
+  if (at != producers_.end()) return (*at)->add(std::move(subscription));
   const stage::SceneViewPtr view = stage_.view()->find(key.scene);
-  if (!view || view->find_player(key.actor) == nullptr) {
-    mailbox_.call([subscription = std::move(subscription), key] {
+  const std::shared_ptr<Producer> producer = view ? make_producer(key, view) : nullptr;
+  if (!producer) {
+    mailbox_.call([subscription = std::move(subscription), scene = key.scene] {
       if (const auto sink = subscription.sink.lock()) {
-        sink->ended(subscription.stream, fmt::format("the actor \"{}\" of the scene \"{}\" was removed", key.actor, key.scene));
+        sink->ended(subscription.stream, fmt::format("what it shows of the scene \"{}\" was removed", scene));
       }
     });
     return;
   }
-  std::shared_ptr<Producer>& producer = producers_[key];
-  if (!producer) {
-    producer = std::make_shared<Producer>(
-        key, ++last_source_, view,
-        Producer::Environment{stage_.strand(), workers_, mailbox_, metrics_, [this] { progressed(); }});
-    metrics_.producers = static_cast<std::int64_t>(producers_.size());
-  }
+  producers_.push_back(producer);
+  metrics_.producers = static_cast<std::int64_t>(producers_.size());
   producer->add(std::move(subscription));
 }
 
 void Hub::unsubscribe(const StreamKey& key, const PacketSink* sink, std::uint32_t stream) {
-  const auto at = producers_.find(key);
+  const auto at = find(key);
   if (at == producers_.end()) return;
-  at->second->remove(sink, stream);
-  if (at->second->idle()) drop_idle();
+  (*at)->remove(sink, stream);
+  if ((*at)->idle()) drop_idle();
+}
+
+void Hub::retune(const StreamKey& from, const StreamKey& to, Subscription subscription) {
+  const auto held = subscription.sink.lock();
+  const auto at = find(from);
+  if (at != producers_.end() && (*at)->serves_only(held.get(), subscription.stream) && same_but_view(from, to) &&
+      find(to) == producers_.end()) {
+    return (*at)->retune(to);
+  }
+  unsubscribe(from, held.get(), subscription.stream);
+  subscribe(to, std::move(subscription));
 }
 
 void Hub::follow(const std::string& scene, const stage::SceneViewPtr& view) {
-  for (auto& [key, producer] : producers_) {
-    if (key.scene != scene) continue;
+  for (const std::shared_ptr<Producer>& producer : producers_) {
+    if (producer->key().scene != scene) continue;
     if (!view) {
       producer->end(fmt::format("the scene \"{}\" was removed", scene));
     } else if (!producer->follow(view)) {
-      producer->end(fmt::format("the actor \"{}\" of the scene \"{}\" was removed", key.actor, scene));
+      producer->end_gone();
     }
   }
   drop_idle();
 }
 
 void Hub::drop_idle() {
-  for (auto at = producers_.begin(); at != producers_.end();) {
-    if (!at->second->idle()) {
-      ++at;
-      continue;
-    }
-    at->second->stop();
-    at = producers_.erase(at);
-  }
+  std::erase_if(producers_, [](const std::shared_ptr<Producer>& producer) {
+    if (producer->idle()) producer->stop();
+    return producer->idle();
+  });
   metrics_.producers = static_cast<std::int64_t>(producers_.size());
   progressed();  // nobody waits for a producer that is gone
 }
 
 bool Hub::delivered(const Waiter& waiter) const {
-  return std::all_of(producers_.begin(), producers_.end(), [&](const auto& entry) {
-    return entry.first.scene != waiter.scene || entry.second->delivered_serial() >= waiter.serial;
+  return std::all_of(producers_.begin(), producers_.end(), [&](const std::shared_ptr<Producer>& producer) {
+    return producer->key().scene != waiter.scene || producer->key().rate < kSlowRate ||
+           producer->delivered_serial() >= waiter.serial;
   });
 }
 
@@ -90,7 +122,7 @@ void Hub::progressed() {
 }
 
 void Hub::stop() {
-  for (auto& [key, producer] : producers_) producer->stop();
+  for (const auto& producer : producers_) producer->stop();
   producers_.clear();
   for (Waiter& w : std::exchange(waiters_, {})) w.then();
 }

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "render/render_thread.hpp"
 #include "server/base/metrics.hpp"
 #include "server/base/worker_pool.hpp"
 #include "server/stage/stage.hpp"
@@ -19,11 +19,14 @@ namespace tweend::streams {
 class Hub {
  public:
   /// @param deliver  posts to the thread on which sinks are called
-  Hub(stage::Stage& stage, WorkerPool& workers, Post deliver, Metrics& metrics);
+  Hub(stage::Stage& stage, WorkerPool& workers, render::RenderThread& renderer, Post deliver, Metrics& metrics);
 
   /// The first packet follows at once. An actor that has gone meanwhile ends the stream.
   void subscribe(const StreamKey& key, Subscription subscription);
   void unsubscribe(const StreamKey& key, const PacketSink* sink, std::uint32_t stream);
+  /// A stream goes on with another rate or camera. A viewer that nobody else looks with takes its producer along: a camera
+  /// that is dragged starts none anew.
+  void retune(const StreamKey& from, const StreamKey& to, Subscription subscription);
 
   /// The stage has published a view (null: the scene is gone).
   void follow(const std::string& scene, const stage::SceneViewPtr& view);
@@ -38,15 +41,19 @@ class Hub {
     std::uint64_t serial;
     std::function<void()> then;
   };
+  using Producers = std::vector<std::shared_ptr<Producer>>;
+  [[nodiscard]] Producers::iterator find(const StreamKey& key);
+  [[nodiscard]] std::shared_ptr<Producer> make_producer(const StreamKey& key, const stage::SceneViewPtr& view);
   void progressed();
   [[nodiscard]] bool delivered(const Waiter& waiter) const;
   void drop_idle();
 
   stage::Stage& stage_;
   WorkerPool& workers_;
+  render::RenderThread& renderer_;
   Mailbox mailbox_;
   Metrics& metrics_;
-  std::map<StreamKey, std::shared_ptr<Producer>> producers_;
+  Producers producers_;
   std::vector<Waiter> waiters_;
   std::uint64_t last_source_ = 0;
 };

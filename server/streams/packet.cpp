@@ -10,7 +10,25 @@ constexpr std::size_t kKept = 8;
 
 }  // namespace
 
-boost::intrusive_ptr<Packet> PacketPool::take(std::size_t floats) {
+std::span<std::byte> Payload::resize(std::size_t bytes) {
+  if (bytes > capacity_) {
+    memory_ = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    capacity_ = bytes;
+  }
+  size_ = bytes;
+  return {memory_.get(), size_};
+}
+
+std::span<float> Payload::resize_floats(std::size_t count) {
+  // operator new aligns for any number, and starts the lifetime of those that are written to it.
+  return {reinterpret_cast<float*>(resize(count * sizeof(float)).data()), count};
+}
+
+std::span<const float> Payload::floats() const noexcept {
+  return {reinterpret_cast<const float*>(memory_.get()), size_ / sizeof(float)};
+}
+
+NewPacketPtr PacketPool::take() {
   std::unique_ptr<Packet> packet;
   {
     const std::lock_guard lock(mutex_);
@@ -20,10 +38,10 @@ boost::intrusive_ptr<Packet> PacketPool::take(std::size_t floats) {
     }
   }
   if (!packet) packet = std::make_unique<Packet>();
-  packet->payload.resize(floats);
   packet->header = {};
+  packet->view_serial = 0;
   packet->pool_ = shared_from_this();
-  return boost::intrusive_ptr<Packet>(packet.release());
+  return NewPacketPtr(packet.release());
 }
 
 void PacketPool::give_back(std::unique_ptr<Packet> packet) {

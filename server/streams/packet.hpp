@@ -3,6 +3,7 @@
 #include <atomic>
 #include <boost/smart_ptr/intrusive_ptr.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <mutex>
 #include <span>
@@ -12,6 +13,25 @@
 
 namespace tweend::streams {
 
+/// Bytes that keep their memory when they are written anew.
+class Payload {
+ public:
+  /// Room for so many bytes, of undefined content.
+  std::span<std::byte> resize(std::size_t bytes);
+  /// The same, as numbers.
+  std::span<float> resize_floats(std::size_t count);
+  /// Less than there was room for: a compressed picture's length is known afterwards.
+  void truncate(std::size_t bytes) noexcept { size_ = bytes < size_ ? bytes : size_; }
+
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {memory_.get(), size_}; }
+  [[nodiscard]] std::span<const float> floats() const noexcept;
+
+ private:
+  std::unique_ptr<std::byte[]> memory_;
+  std::size_t capacity_ = 0;
+  std::size_t size_ = 0;
+};
+
 class PacketPool;
 
 /// One evaluated and encoded packet, shared by all its subscribers. `header.stream` is filled in for each of them.
@@ -19,10 +39,9 @@ class PacketPool;
 class Packet {
  public:
   protocol::PacketHeader header;
-  std::uint64_t source = 0;    ///< its producer: a stream that changes producers counts on from where it was
-  std::vector<float> payload;  ///< as it goes on the wire (little-endian machines)
-
-  [[nodiscard]] std::span<const std::byte> payload_bytes() const noexcept { return std::as_bytes(std::span(payload)); }
+  std::uint64_t source = 0;       ///< its producer: a stream that changes producers counts on from where it was
+  std::uint64_t view_serial = 0;  ///< of the newest published view that it shows; the strand's
+  Payload payload;                ///< as it goes on the wire (little-endian machines)
 
  private:
   friend class PacketPool;
@@ -33,12 +52,13 @@ class Packet {
 };
 
 using PacketPtr = boost::intrusive_ptr<const Packet>;
+using NewPacketPtr = boost::intrusive_ptr<Packet>;  ///< while it is in the making
 
 /// Packets of one producer, used again and again: once a stream runs, no packet is allocated. Safe from any thread.
 class PacketPool : public std::enable_shared_from_this<PacketPool> {
  public:
-  /// A packet with room for `floats` values, to be filled and then shared as a PacketPtr.
-  [[nodiscard]] boost::intrusive_ptr<Packet> take(std::size_t floats);
+  /// A packet to be filled and then shared as a PacketPtr; its payload is an earlier one's.
+  [[nodiscard]] NewPacketPtr take();
 
  private:
   friend void intrusive_ptr_release(const Packet* packet) noexcept;

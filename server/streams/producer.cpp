@@ -14,40 +14,42 @@ std::int64_t media_us(double time_s) noexcept { return std::llround(time_s * 1e6
 
 }  // namespace
 
-Producer::Producer(StreamKey key, std::uint64_t source, stage::SceneViewPtr view, Environment environment)
+Producer::Producer(StreamKey key, std::uint64_t source, Environment environment, const MakeContent& make_content)
     : key_(std::move(key)),
       source_(source),
       environment_(std::move(environment)),
+      content_(make_content(*this)),
       start_us_(steady_now_us()),
-      timer_(environment_.strand) {
-  // The hub looked before it leapt: the actor is there.
-  static_cast<void>(follow(std::move(view)));
-}
+      timer_(environment_.strand) {}
 
-bool Producer::follow(stage::SceneViewPtr view) {
-  const auto& actors = view->scene->actors;
-  const auto at =
-      std::find_if(actors.begin(), actors.end(), [this](const model::ActorPtr& a) { return a->name == key_.actor; });
-  if (at == actors.end()) return false;
-  if (view_ && view_->scene->actors[actor_]->mesh != (*at)->mesh) return false;
-  const auto actor = static_cast<std::size_t>(at - actors.begin());
-  if (view_ && evaluated_serial_ == view_->serial && shows_the_same(*view, actor)) {
-    // Another actor's player: what has been sent of this one is as good for the new view.
-    evaluated_serial_ = view->serial;
-    if (!evaluating_) delivered_serial_ = view->serial;
+bool Producer::follow(const stage::SceneViewPtr& view) {
+  if (view_ && begun_serial_ == view_->serial && content_->shows_the_same(*view)) {
+    // Something else has changed: what has been sent, or is in the making, is as good for the new view.
+    begun_serial_ = view->serial;
+    if (newest_) {
+      newest_->view_serial = view->serial;
+    } else {
+      delivered_serial_ = view->serial;
+    }
   }
-  actor_ = actor;
-  view_ = std::move(view);
+  if (!content_->follow(view)) return false;
+  view_ = view;
   if (!idle()) schedule();
   return true;
 }
 
-bool Producer::shows_the_same(const stage::SceneView& next, std::size_t actor) const noexcept {
-  return next.scene->revision == view_->scene->revision && (*next.players)[actor] == (*view_->players)[actor_];
+void Producer::retune(StreamKey key) {
+  key_ = std::move(key);
+  content_->look_from(key_);
+  begun_serial_ = 0;  // nothing shows it so yet
+  timer_.cancel();    // which schedules anew
+  schedule();
 }
 
-stage::ActorShow Producer::show(ClockUs at_us) const noexcept {
-  return stage::show_actor(view_->scene->actors[actor_], (*view_->players)[actor_], at_us);
+bool Producer::serves_only(const PacketSink* sink, std::uint32_t stream) const noexcept {
+  if (subscriptions_->size() != 1) return false;
+  const Subscription& only = subscriptions_->front();
+  return only.stream == stream && only.sink.lock().get() == sink;
 }
 
 void Producer::add(Subscription subscription) {
@@ -70,6 +72,7 @@ void Producer::remove(const PacketSink* sink, std::uint32_t stream) {
 }
 
 void Producer::end(const std::string& reason) {
+  newest_.reset();
   environment_.mailbox.call([to = subscriptions_, reason] {
     for (const Subscription& s : *to) {
       if (const auto sink = s.sink.lock()) sink->ended(s.stream, reason);
@@ -84,8 +87,8 @@ void Producer::stop() {
 }
 
 void Producer::schedule() {
-  if (scheduled_ || evaluating_ || idle()) return;
-  const bool changed = evaluated_serial_ != view_->serial;
+  if (scheduled_ || busy_ || idle()) return;
+  const bool changed = begun_serial_ != view_->serial;
   if (!changed && settled_) return;
   const ClockUs now_us = steady_now_us();
   constexpr double kLongestUs = 1e15;  // decades: what the clock can still count
@@ -102,7 +105,8 @@ void Producer::schedule() {
   timer_.expires_at(instant(at_us));
   timer_.async_wait([self = shared_from_this(), at_us](const boost::system::error_code& error) {
     self->scheduled_ = false;
-    if (!error && !self->idle()) self->tick(at_us);
+    if (error) return self->schedule();  // retuned; or stopped, and then idle
+    if (!self->idle()) self->tick(at_us);
   });
 }
 
@@ -110,55 +114,52 @@ void Producer::tick(ClockUs at_us) {
   const ClockUs now_us = steady_now_us();
   // The machine was away: show now, not then. And never a playhead at a reading before it was set.
   if (static_cast<double>(now_us - at_us) >= 1e6 / key_.rate) at_us = now_us;
-  evaluate(std::max(at_us, (*view_->players)[actor_].anchor_us));
+  begin(std::max(at_us, content_->earliest_us()));
 }
 
-void Producer::evaluate(ClockUs at_us) {
-  making_show_ = show(at_us);
-  const stage::ActorShow& show = making_show_;
-  making_ = pool_->take(6 * show.actor->mesh->vertex_count());
-  making_->source = source_;
+void Producer::begin(ClockUs at_us) {
+  const ContentReading reading = content_->read(at_us);
+  NewPacketPtr packet = pool_->take();
+  packet->source = source_;
+  packet->view_serial = view_->serial;
   const std::uint64_t revision = view_->scene->revision;
-  const bool jumped = sequence_ != 0 && (show.continuity != continuity_ || revision != revision_);
-  protocol::PacketHeader& header = making_->header;
-  header.kind = protocol::PacketKind::Vertices;
-  header.encoding = protocol::kVerticesF32;
+  const bool jumped = sequence_ != 0 && (reading.continuity != continuity_ || revision != revision_);
+  protocol::PacketHeader& header = packet->header;
   header.flags = static_cast<std::uint8_t>(protocol::kFlagKey | (jumped ? protocol::kFlagDiscontinuity : 0) |
-                                           (show.moving ? 0 : protocol::kFlagLast));
+                                           (reading.moving ? 0 : protocol::kFlagLast));
   header.sequence = sequence_++;
-  header.media_us = media_us(show.time_s);
+  header.media_us = media_us(reading.time_s);
   header.server_us = at_us;
   header.revision = static_cast<std::uint32_t>(revision);
-  header.payload_bytes = static_cast<std::uint32_t>(making_->payload_bytes().size());
-  continuity_ = show.continuity;
+  continuity_ = reading.continuity;
   revision_ = revision;
-  settled_ = !show.moving;
+  settled_ = !reading.moving;
   last_at_us_ = at_us;
-  evaluated_serial_ = view_->serial;
-  evaluating_ = true;
+  begun_serial_ = view_->serial;
+  busy_ = true;
   busy_self_ = shared_from_this();
-  environment_.workers.post([this] { evaluate_on_worker(); });
+  ++in_making_;
+  newest_ = packet;
+  content_->begin(std::move(packet), at_us + static_cast<ClockUs>(std::min(1e6 / key_.rate, 1e6)));
 }
 
-void Producer::evaluate_on_worker() {
-  const std::span<float> out(making_->payload);
-  const std::size_t half = out.size() / 2;
-  const stage::ActorShow& show = making_show_;
-  // The lengths are right by construction: there is nothing to fail.
-  static_cast<void>(model::sample_vertices(*show.actor, *show.clip, show.time_s, {out.first(half), out.subspan(half), {}}));
-  boost::asio::post(environment_.strand, [this] { finished(); });
+void Producer::ready() {
+  busy_ = false;
+  schedule();
 }
 
-void Producer::finished() {
-  const std::shared_ptr<Producer> self = std::move(busy_self_);  // may be the last to hold this, once it returns
-  evaluating_ = false;
-  latest_ = std::move(making_);
-  making_show_ = {};
+void Producer::made(Result<NewPacketPtr> packet) {
+  const std::shared_ptr<Producer> self = busy_self_;  // may be the last to hold this, once it returns
+  if (--in_making_ == 0) busy_self_.reset();
+  if (!packet) return end(packet.error().message);
+  if (newest_ == *packet) newest_.reset();
+  protocol::PacketHeader& header = (*packet)->header;
+  header.payload_bytes = static_cast<std::uint32_t>((*packet)->payload.bytes().size());
+  delivered_serial_ = (*packet)->view_serial;
+  latest_ = std::move(*packet);
   tweend::add(environment_.metrics.packets_produced_total);
   environment_.mailbox.put({latest_, subscriptions_});
-  delivered_serial_ = evaluated_serial_;
   environment_.progressed();
-  schedule();
 }
 
 }  // namespace tweend::streams

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "tests/assets/must.hpp"
+#include "tests/assets/sample_images.hpp"
 #include "tests/assets/sample_objs.hpp"
 #include "tests/assets/temp_folder.hpp"
 
@@ -190,6 +191,58 @@ TEST_F(AssetLibraryTest, FilesOfASequenceAreLimited) {
   Limits limits;
   limits.keyframes_per_clip = 1;
   EXPECT_EQ(error_of(library({"root"}, limits), "s").code, ErrorCode::Limit);
+}
+
+TEST_F(AssetLibraryTest, MaterialsLieBesideTheirFile) {
+  folder_.write("root/props/tex/a.png", png_file({1, 1, {1, 2, 3, 4}}));
+  folder_.write("root/props/a.mtl", "newmtl m\nKd 0.5\nmap_Kd tex/a.png\n");
+  folder_.write("root/props/a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
+  const ImportedModel model = must(library().import("props/a.obj"));
+  EXPECT_TRUE(model.warnings.empty());
+  const model::Surface& surface = model.mesh->surface();
+  ASSERT_EQ(surface.materials.size(), 1U);
+  EXPECT_EQ(surface.materials[0].base_color, glm::vec3(0.5F));
+  ASSERT_TRUE(surface.materials[0].base_color_texture);
+  EXPECT_EQ(surface.materials[0].base_color_texture->rgba(), (std::vector<std::uint8_t>{1, 2, 3, 4}));
+}
+
+TEST_F(AssetLibraryTest, ASequenceHasTheMaterialsOfItsFirstFrame) {
+  const std::string triangle(kTriangle);
+  folder_.write("root/s/m.mtl", "newmtl m\nKd 1 0 0\n");
+  folder_.write("root/s/s_2.obj", "mtllib gone.mtl\nusemtl other\n" + triangle);
+  folder_.write("root/s/s_1.obj", "mtllib m.mtl\nusemtl m\n" + triangle);
+  const ImportedModel model = must(library().import("s"));
+  EXPECT_TRUE(model.warnings.empty());
+  ASSERT_EQ(model.mesh->surface().materials.size(), 1U);
+  EXPECT_EQ(model.mesh->surface().materials[0].base_color, glm::vec3(1, 0, 0));
+}
+
+TEST_F(AssetLibraryTest, AbsentMaterialsAreWarnedOfAndMalformedOnesRefused) {
+  folder_.write("root/a.obj", "mtllib a.mtl\nusemtl m\n" + std::string(kTriangle));
+  const ImportedModel model = must(library().import("a.obj"));
+  EXPECT_EQ(model.warnings.size(), 1U);
+  EXPECT_TRUE(model.mesh->surface().materials.empty());
+  folder_.write("root/a.mtl", "newmtl m\nKd 1 1\n");
+  EXPECT_EQ(error_of(library(), "a.obj").code, ErrorCode::BadAsset);
+  EXPECT_EQ(error_of(library(), "a.obj").message, "a.mtl:2: expected 1 or 3 numbers, found 2");
+}
+
+TEST_F(AssetLibraryTest, SideFilesCountTowardsTheBytesOfAnAssetButAreNotListed) {
+  const std::string obj = "mtllib m.mtl\nusemtl m\n" + std::string(kTriangle);
+  const std::string mtl = "newmtl m\nKd 1\n";
+  folder_.write("root/s/m.mtl", mtl);
+  folder_.write("root/s/s_1.obj", obj);
+  folder_.write("root/s/s_2.obj", obj);
+  EXPECT_EQ(listed(library()), fmt::format("s obj_sequence {}", 2 * obj.size()));
+  Limits limits;
+  limits.asset_bytes = 2 * obj.size() + mtl.size();
+  EXPECT_TRUE(library({"root"}, limits).import("s"));
+  limits.asset_bytes -= 1;
+  EXPECT_EQ(error_of(library({"root"}, limits), "s").code, ErrorCode::Limit);
+  limits.asset_bytes = obj.size() + mtl.size();
+  EXPECT_TRUE(library({"root"}, limits).import("s/s_1.obj"));
+  limits.asset_bytes -= 1;
+  EXPECT_EQ(error_of(library({"root"}, limits), "s/s_1.obj").code, ErrorCode::Limit);
 }
 
 TEST_F(AssetLibraryTest, AnyThreadMayAsk) {

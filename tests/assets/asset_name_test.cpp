@@ -40,6 +40,27 @@ TEST(AssetName, JoinsUnderTheRootWithoutASlash) {
   EXPECT_EQ(join_name("x/y", "a.obj"), "x/y/a.obj");
 }
 
+TEST(AssetName, ReferencesAreFollowedFromTheirFolder) {
+  EXPECT_EQ(resolve_name("", "a.png"), "a.png");
+  EXPECT_EQ(resolve_name("x/y", "a b.png"), "x/y/a b.png");
+  EXPECT_EQ(resolve_name("x/y", "../t/./a.png"), "x/t/a.png");
+  EXPECT_EQ(resolve_name("x/y", "..\\t\\\\a.png"), "x/t/a.png");
+  EXPECT_EQ(resolve_name("x/y", "../../a.png"), "a.png");
+  EXPECT_EQ(resolve_name("x", "t/../../a.png"), "a.png");
+  EXPECT_EQ(resolve_name("x/y", "."), "x/y");
+  EXPECT_EQ(resolve_name("x", "..."), "x/...");
+}
+
+TEST(AssetName, ReferencesThatLeaveOrAreAbsoluteNameNothing) {
+  for (const std::string_view reference :
+       {"../../a.png"sv, "../../x/a.png"sv, "t/../../../a.png"sv, ".."sv, "/etc/passwd"sv, "\\\\host\\a.png"sv, "C:\\a.png"sv,
+        "c:a.png"sv, "a\n.png"sv, "\xE9.png"sv, "a\0b"sv}) {
+    EXPECT_EQ(resolve_name("x", reference), std::nullopt) << reference;
+  }
+  EXPECT_EQ(resolve_name("", ""), std::nullopt) << "the root is no file";
+  EXPECT_EQ(resolve_name("", std::string(5'000, 'a')), std::nullopt);
+}
+
 TEST(AssetName, LongNamesAreCutBetweenCharacters) {
   EXPECT_EQ(quoted_name("a"), "\"a\"");
   std::string name(199, 'a');

@@ -35,7 +35,9 @@ TEST(ReadObj, ReadsListsAndFaces) {
   EXPECT_THAT(file.texcoords, ElementsAre(0.25F, 0.75F));
   EXPECT_THAT(file.normals, ElementsAre(0, 0, 1));
   EXPECT_THAT(file.corners, ElementsAre(ObjCorner{0, 0, 0}, ObjCorner{1, 0, 0}, ObjCorner{2, 0, 0}));
-  EXPECT_THAT(file.faces, ElementsAre(ObjFace{0, 3, 10}));
+  EXPECT_THAT(file.faces, ElementsAre(ObjFace{0, 3, 10, 0}));
+  EXPECT_THAT(file.material_libraries, ElementsAre("x.mtl"));
+  EXPECT_THAT(file.material_names, ElementsAre("m"));
 }
 
 TEST(ReadObj, ReadsEveryFormOfCorner) {
@@ -87,6 +89,32 @@ TEST(ReadObj, SkipsWhatAPolygonMeshHasNoUseFor) {
   const std::string text =
       "o a\ng a b\ns 1\nmg 1 0.5\nusemtl m\nmtllib a b\nl 1 2 \\\n3\np 1\nvp 0 1\ncstype bezier\ndeg 3\nsurf 0 1\nend\nlod 1\n";
   EXPECT_EQ(must_read(text + std::string(kTriangle)).faces.size(), 1U);
+}
+
+TEST(ReadObj, FacesKeepTheMaterialInUse) {
+  const ObjFile file = must_read(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nusemtl Material #25 \nf 1 2 3\nusemtl a\nusemtl b\nf 1 2 3\ng x\nf 1 2 3\n"
+      "usemtl Material #25\nf 1 2 3\nusemtl\nf 1 2 3\n");
+  EXPECT_THAT(file.material_names, ElementsAre("Material #25", "a", "b"));
+  std::vector<std::int32_t> materials;
+  for (const ObjFace& face : file.faces) materials.push_back(face.material);
+  EXPECT_THAT(materials, ElementsAre(kNoMaterial, 0, 2, 2, 0, kNoMaterial));
+}
+
+TEST(ReadObj, KeepsEachLibraryStatementOnce) {
+  const ObjFile file = must_read("mtllib a b.mtl\nmtllib\nmtllib c.mtl d.mtl\nmtllib a b.mtl\n" + std::string(kTriangle));
+  EXPECT_THAT(file.material_libraries, ElementsAre("a b.mtl", "c.mtl d.mtl"));
+  EXPECT_TRUE(must_read(kTriangle).material_libraries.empty());
+}
+
+TEST(ReadObj, LibrariesAreLimited) {
+  std::string text;
+  for (int i = 0; i < 256; ++i) text += "mtllib " + std::to_string(i) + "\n";
+  EXPECT_EQ(must_read(text + std::string(kTriangle)).material_libraries.size(), 256U);
+  const auto over = read_obj(text + "mtllib more\n" + std::string(kTriangle), "a.obj", Limits{});
+  ASSERT_FALSE(over);
+  EXPECT_EQ(over.error().code, ErrorCode::Limit);
+  EXPECT_EQ(over.error().message, "a.obj:257: expected at most 256 material libraries, found more");
 }
 
 TEST(ReadObj, RefusesNumbersThatAreNotWhollyFiniteNumbers) {

@@ -78,6 +78,25 @@ TEST(ObjScanner, SkipsTheTokensNobodyTook) {
   EXPECT_FALSE(scanner.next_statement());
 }
 
+TEST(ObjScanner, TheRestOfAStatementIsANameAsItStands) {
+  const auto rest_of = [](std::string_view text) {
+    ObjScanner scanner(text);
+    EXPECT_TRUE(scanner.next_statement());
+    EXPECT_EQ(scanner.next_token(), "usemtl");
+    const std::string rest = scanner.rest_of_statement();
+    EXPECT_EQ(scanner.next_token(), "");
+    return fmt::format("[{}]{}", rest, scanner.next_statement() ? fmt::format(" then {}", scanner.line()) : "");
+  };
+  EXPECT_EQ(rest_of("usemtl  red  wood\t\nf"), "[red  wood] then 2");
+  EXPECT_EQ(rest_of("usemtl Material #25\r\nf"), "[Material #25] then 2");
+  EXPECT_EQ(rest_of("usemtl #25"), "[#25]");
+  EXPECT_EQ(rest_of("usemtl a\\b\rf"), "[a\\b] then 2");
+  EXPECT_EQ(rest_of("usemtl a\\\n  b\nf"), "[a   b] then 3");
+  EXPECT_EQ(rest_of("usemtl a\\"), "[a\\]");
+  for (const char* nothing : {"usemtl", "usemtl  \t ", "usemtl \\\n \\\r\n"}) EXPECT_EQ(rest_of(nothing), "[]");
+  EXPECT_EQ(rest_of("usemtl\n\nf"), "[] then 3");
+}
+
 TEST(ObjScanner, SkipsAByteOrderMark) { EXPECT_EQ(scan("\xEF\xBB\xBFv 1"), "1:[v][1]\n"); }
 
 }  // namespace

@@ -210,6 +210,21 @@ TEST(BuildObjModel, RefusesFramesThatDoNotFitTheFiles) {
   EXPECT_FALSE(build_obj_model("s", {}, {}, Limits{}));
 }
 
+TEST(BuildObjModel, MaterialsAreThoseOfTheFirstFile) {
+  const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+  const std::array files{must_read(head + "usemtl a\nf 1 2 3 4\nusemtl b\nf 1 2 3\n", "1"),
+                         must_read(head + "usemtl c\nf 1 2 3 4\nf 1 2 3\n", "2")};
+  const std::array<std::int64_t, 2> frames{0, 1};
+  const std::array<std::optional<model::Material>, 2> materials{model::Material{"a", {1, 0, 0}, nullptr}, std::nullopt};
+  const ImportedModel model = must(build_obj_model("s", files, frames, Limits{}, materials));
+  const model::Surface& surface = model.mesh->surface();
+  ASSERT_EQ(surface.materials.size(), 2U);
+  EXPECT_EQ(surface.materials[0].name, "a");
+  EXPECT_EQ(surface.materials[1].name, "") << "b is not known";
+  EXPECT_THAT(surface.parts, ElementsAre(model::MeshPart{0, 6, 0}, model::MeshPart{6, 3, 1}));
+  EXPECT_TRUE(must(build_obj_model("s", files, frames, Limits{})).mesh->surface().parts.empty());
+}
+
 TEST(BuildObjModel, TheSameFilesMakeTheSameContent) {
   const ImportedModel a = must_build({std::string(kTriangle), triangle_to("0 2 0")});
   const ImportedModel b = must_build({std::string(kTriangle), triangle_to("0 2 0")});

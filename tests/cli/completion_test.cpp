@@ -76,6 +76,18 @@ TEST(Completion, AsksTheServerForMethodsAndTheirParameters) {
   EXPECT_THAT(complete("tweenctl call playback.seek time=1 b"), ElementsAre("b c="));
 }
 
+TEST(Completion, KnowsThePictures) {
+  EXPECT_THAT(complete("tweenctl watch "), UnorderedElementsAre("vertices", "frames"));
+  EXPECT_THAT(complete("tweenctl watch frames --encoding "), ElementsAre("jpeg", "png"));
+  EXPECT_THAT(complete("tweenctl watch frames --o"), UnorderedElementsAre("--out", "--orbit"));
+  EXPECT_THAT(complete("tweenctl frame a.png --el"), ElementsAre("--elevation"));
+}
+
+TEST(Completion, OffersFolders) {
+  EXPECT_THAT(complete("tweenctl watch frames -o /proc/self/fdi"), ElementsAre("/proc/self/fdinfo"));
+  EXPECT_THAT(complete("tweenctl watch frames --out=/proc/self/cmd"), IsEmpty()) << "a file";
+}
+
 TEST(Completion, OffersFiles) { EXPECT_THAT(complete("tweenctl apply /proc/self/cmd"), ElementsAre("/proc/self/cmdline")); }
 
 }  // namespace

@@ -105,13 +105,17 @@ std::string event(std::string_view method, const Json& params) {
   return Json{{"jsonrpc", "2.0"}, {"method", method}, {"params", params}}.dump() + "\n";
 }
 
-std::string packet(protocol::PacketHeader header, const std::vector<float>& floats) {
-  std::string payload(floats.size() * sizeof(float), '\0');
-  if (!floats.empty()) std::memcpy(payload.data(), floats.data(), payload.size());
+std::string raw_packet(protocol::PacketHeader header, const std::string& payload) {
   header.payload_bytes = static_cast<std::uint32_t>(payload.size());
   const auto bytes = protocol::encode_header(header);
   const std::string head(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   return event("stream.packet", {{"stream", header.stream}, {"bytes", head.size() + payload.size()}}) + head + payload;
+}
+
+std::string packet(protocol::PacketHeader header, const std::vector<float>& floats) {
+  std::string payload(floats.size() * sizeof(float), '\0');
+  if (!floats.empty()) std::memcpy(payload.data(), floats.data(), payload.size());
+  return raw_packet(header, payload);
 }
 
 Reaction answers(std::string method, Json params, const Json& result) {

@@ -61,6 +61,8 @@ class DeafPort {
 [[nodiscard]] std::string event(std::string_view method, const Json& params);
 /// An announcement with its packet, as on the wire. payload_bytes is filled in.
 [[nodiscard]] std::string packet(protocol::PacketHeader header, const std::vector<float>& floats);
+/// The same with any payload.
+[[nodiscard]] std::string raw_packet(protocol::PacketHeader header, const std::string& payload);
 
 /// A reaction that only answers.
 [[nodiscard]] Reaction answers(std::string method, Json params, const Json& result);

@@ -16,6 +16,15 @@ TEST(Format, NumbersAreShort) {
   EXPECT_EQ(number_text(1.0 / 3.0), "0.333333");
 }
 
+TEST(Format, BytesHaveAUnitThatFits) {
+  EXPECT_EQ(bytes_text(0), "0 B");
+  EXPECT_EQ(bytes_text(999), "999 B");
+  EXPECT_EQ(bytes_text(23'400), "23.4 kB");
+  EXPECT_EQ(bytes_text(999'949), "999.9 kB");
+  EXPECT_EQ(bytes_text(999'950), "1.0 MB");
+  EXPECT_EQ(bytes_text(123'456'789'012'345'678U), "123456.8 TB");
+}
+
 TEST(Format, ControlCharactersNeverReachATerminal) { EXPECT_EQ(printable("a\x1b[2Jb\nc\x7f"), "a [2Jb c "); }
 
 TEST(Format, BriefSaysAnyValueInFewWords) {

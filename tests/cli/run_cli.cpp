@@ -8,23 +8,39 @@
 
 namespace tweend::cli::test {
 
-Outcome run_alone(std::vector<std::string> arguments, const std::string& in) {
+namespace {
+
+Outcome run_in_strings(std::vector<std::string> arguments, const std::string& in, std::size_t columns) {
   std::istringstream input(in);
   std::ostringstream out;
   std::ostringstream err;
-  const ExitCode code = run(std::move(arguments), Io{input, out, err});
+  const ExitCode code = run(std::move(arguments), Io{input, out, err, columns});
   return {code, out.str(), err.str()};
 }
 
-Outcome run_cli(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in) {
+Outcome run_with(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in, std::size_t columns) {
   FakeServer server(std::move(script));
   arguments.insert(arguments.begin(), {"--server", server.address()});
-  Outcome outcome = run_alone(std::move(arguments), in);
+  Outcome outcome = run_in_strings(std::move(arguments), in, columns);
   // A client that never came would be waited for in vain.
   if (outcome.code != ExitCode::Usage) {
     EXPECT_EQ(server.complaints(), "");
   }
   return outcome;
+}
+
+}  // namespace
+
+Outcome run_alone(std::vector<std::string> arguments, const std::string& in) {
+  return run_in_strings(std::move(arguments), in, 0);
+}
+
+Outcome run_cli(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in) {
+  return run_with(std::move(script), std::move(arguments), in, 0);
+}
+
+Outcome run_on_terminal(std::vector<Reaction> script, std::vector<std::string> arguments, std::size_t columns) {
+  return run_with(std::move(script), std::move(arguments), {}, columns);
 }
 
 }  // namespace tweend::cli::test

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,8 @@ struct Outcome {
 
 /// Runs it against a server that plays this script, and checks that the script was played to its end.
 [[nodiscard]] Outcome run_cli(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in = {});
+
+/// The same where standard error is a terminal with so many columns.
+[[nodiscard]] Outcome run_on_terminal(std::vector<Reaction> script, std::vector<std::string> arguments, std::size_t columns);
 
 }  // namespace tweend::cli::test

@@ -1,13 +1,24 @@
 """Each limit is an option; one more than it allows is refused and changes nothing (section 5.3)."""
 import json
 import os
+import struct
 import subprocess
+import zlib
 
 import harness
 from client import Closed, LineClient, request_json
 from harness import TRIANGLE, lifted, wait_until
 
 QUAD = {"positions": [0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], "indices": [0, 1, 2, 0, 2, 3]}
+
+
+def png(width, height):
+    """A grey image."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    rows = (b"\0" + b"\x80" * width) * height
+    header = struct.pack(">IIBBBBB", width, height, 8, 0, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b"")
 
 
 class Limits(harness.TestCase):
@@ -116,6 +127,19 @@ class Limits(harness.TestCase):
         self.start("--max-asset-bytes", 4000, assets=[folder])
         self.refused_as_limit("actor.add", actor="a", asset="big.obj")
         self.c.call("actor.add", actor="a", asset="small.obj")
+
+    def test_pixels_of_a_texture(self):
+        folder = self.folder()
+        for name, width in (("four", 4), ("five", 5)):
+            with open(os.path.join(folder, f"{name}.png"), "wb") as f:
+                f.write(png(width, 1))
+            with open(os.path.join(folder, f"{name}.mtl"), "w") as f:
+                f.write(f"newmtl m\nmap_Kd {name}.png\n")
+            with open(os.path.join(folder, f"{name}.obj"), "w") as f:
+                f.write(f"mtllib {name}.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
+        self.start("--max-texture-pixels", 4, assets=[folder])
+        self.refused_as_limit("actor.add", actor="a", asset="five.obj")
+        self.c.call("actor.add", actor="a", asset="four.obj")
 
     def test_requests_of_a_batch(self):
         self.start("--max-batch", 3)

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -27,6 +28,8 @@ void check(const tweend::assets::ObjFile& file) {
   for (const auto& face : file.faces) {
     require(face.first_corner == corners && face.corner_count >= 3 && face.line > 0);
     corners += face.corner_count;
+    require(face.material >= tweend::assets::kNoMaterial);
+    require(face.material < static_cast<std::ptrdiff_t>(file.material_names.size()));
   }
   require(corners == file.corners.size());
   for (const auto& corner : file.corners) {
@@ -41,6 +44,7 @@ void check(const tweend::assets::ObjFile& file) {
 
 void check(const tweend::assets::ImportedModel& model, const std::vector<tweend::assets::ObjFile>& files) {
   require(model.keys.size() == files.size());
+  for (const auto& part : model.mesh->surface().parts) require(part.material < model.mesh->surface().materials.size());
   require(model.mesh->vertex_count() <= kMaxVertices && model.mesh->vertex_count() <= files.front().corners.size());
   for (const auto& key : model.keys) {
     require(key.vertices->vertex_count() == model.mesh->vertex_count());
@@ -71,7 +75,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     rest.remove_prefix(end + kNextFile.size());
   }
   if (files.empty()) return 0;
-  const auto model = tweend::assets::build_obj_model("fuzz", files, frames, limits);
+  std::vector<std::optional<tweend::model::Material>> materials(files.front().material_names.size());
+  for (std::size_t i = 0; i < materials.size(); i += 2) materials[i].emplace();  // every other one is known
+  const auto model = tweend::assets::build_obj_model("fuzz", files, frames, limits, materials);
   if (model) check(*model, files);
   return 0;
 }

@@ -43,9 +43,9 @@ CASES = [
     ("clients/cli/a.cpp", "#include <boost/beast/websocket.hpp>", ""),
     ("clients/cli/a.hpp", "#include <boost/beast/websocket.hpp>", "Beast stays in .cpp files"),
     # GL
-    ("server/app/a.cpp", "#include <epoxy/gl.h>", "nothing draws yet"),
-    ("server/streams/a.cpp", "#include <EGL/egl.h>", "nothing draws yet"),
-    ("server/streams/a.cpp", "#include <GL/gl.h>", "nothing draws yet"),
+    ("server/app/a.cpp", "#include <epoxy/gl.h>", "only render/ speaks to the GPU"),
+    ("server/streams/a.cpp", "#include <EGL/egl.h>", "only render/ speaks to the GPU"),
+    ("server/streams/a.cpp", "#include <GL/gl.h>", "only render/ speaks to the GPU"),
     # Pure animation
     ("server/animation/a.cpp", "#include <algorithm>", ""),
     ("server/animation/a.cpp", "#include <glm/vec3.hpp>", ""),

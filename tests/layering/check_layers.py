@@ -27,9 +27,9 @@ LAYERS: dict[str, tuple[str, ...]] = {
     "store": ("model", "base"),
     "render": ("base",),
     "stage": ("store", "model", "animation", "base"),
-    "streams": ("stage", "protocol", "model", "animation", "base"),
-    "commands": ("streams", "stage", "store", "assets", "protocol", "model", "animation", "base"),
-    "net": ("commands", "streams", "protocol", "base"),
+    "streams": ("render", "stage", "protocol", "model", "animation", "base"),
+    "commands": ("streams", "render", "stage", "store", "assets", "protocol", "model", "animation", "base"),
+    "net": ("commands", "streams", "render", "protocol", "base"),
     "app": ("net", "commands", "streams", "stage", "store", "assets", "render", "protocol", "model", "animation", "base"),
     "cli": ("protocol", "base"),
 }
@@ -136,9 +136,9 @@ def sockets_stay_in_net(inc: Include) -> str | None:
     return None
 
 
-def no_gl_yet(inc: Include) -> str | None:
-    if re.match(r"(GL|GLES\d?|EGL|KHR|epoxy|GLFW|glad)/|gbm\.h$", inc.target):
-        return "nothing draws yet; GL will belong to render/ alone"
+def gl_stays_in_render(inc: Include) -> str | None:
+    if inc.layer != "render" and re.match(r"(GL|GLES\d?|EGL|KHR|epoxy|GLFW|glad)/|gbm\.h$", inc.target):
+        return "only render/ speaks to the GPU; pass spans and matrices"
     return None
 
 
@@ -171,7 +171,7 @@ def animation_is_pure(inc: Include) -> str | None:
 
 
 INCLUDE_RULES: tuple[Callable[[Include], str | None], ...] = (
-    known_path, arrows_down, json_stays_in_protocol, sockets_stay_in_net, no_gl_yet, animation_is_pure)
+    known_path, arrows_down, json_stays_in_protocol, sockets_stay_in_net, gl_stays_in_render, animation_is_pure)
 
 # --------------------------------------------------------------------------------------------------- rules for the text
 CLOCKLESS = ("animation", "model", "protocol", "assets", "render")

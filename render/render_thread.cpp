@@ -1,0 +1,182 @@
+#include "render/render_thread.hpp"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <deque>
+#include <utility>
+
+#include "render/render_target.hpp"
+#include "render/renderer.hpp"
+
+namespace tweend::render {
+namespace {
+
+/// Pictures on the GPU at once: one being drawn, one done and about to be read. More would only grow older.
+constexpr std::size_t kInFlight = 2;
+/// How long the GPU is waited for before the queue is looked at again, nanoseconds.
+constexpr GLuint64 kPatience = 1'000'000;
+
+constexpr int kSamplesOnGpu = 4;
+
+Result<std::unique_ptr<EglContext>> switched_off() {
+  return fail(ErrorCode::Unavailable, "expected a server that draws, found one started with --no-render");
+}
+
+int supported_samples(int wanted, bool software) {
+  GLint most = 1;
+  glGetIntegerv(GL_MAX_SAMPLES, &most);
+  if (wanted == 0) wanted = software ? 1 : kSamplesOnGpu;
+  return std::clamp(wanted, 1, static_cast<int>(most));
+}
+
+}  // namespace
+
+/// The work of the thread, once there is a context.
+class RenderThread::Loop {
+ public:
+  Loop(std::unique_ptr<Renderer> renderer, int samples) : renderer_(std::move(renderer)), targets_(samples) {}
+
+  [[nodiscard]] bool busy() const noexcept { return !in_flight_.empty(); }
+  [[nodiscard]] bool has_room() const noexcept { return in_flight_.size() < kInFlight; }
+
+  void draw(std::shared_ptr<FrameJob> job) {
+    const Picture& picture = job->picture();
+    Result<RenderTargetPtr> target = targets_.take(picture.size);
+    if (!target) return job->drawn(target.error());
+    PixelsPtr pixels = readback_.take(picture.size);
+    if (!pixels) {
+      targets_.give_back(std::move(*target));
+      return job->drawn(no_memory(picture.size));
+    }
+    renderer_->draw(picture, **target);
+    in_flight_.push_back({std::move(job), std::move(*target), std::move(pixels), fence(), false});
+  }
+
+  /// Takes the oldest picture a step further if the GPU is done with the step before, or is within `timeout_ns`.
+  /// @return whether it was
+  bool advance(GLuint64 timeout_ns) {
+    InFlight& oldest = in_flight_.front();
+    const GLenum state = glClientWaitSync(oldest.fence, GL_SYNC_FLUSH_COMMANDS_BIT, timeout_ns);
+    if (state == GL_TIMEOUT_EXPIRED) return false;
+    glDeleteSync(oldest.fence);
+    if (!oldest.reading) {
+      // Only now: a software device would draw the whole picture inside this call, with everyone waiting.
+      oldest.target->read_into(oldest.pixels->buffer());
+      oldest.reading = true;
+      oldest.fence = fence();
+      return true;
+    }
+    InFlight done = std::move(oldest);
+    in_flight_.pop_front();
+    const Size size = done.target->size();
+    targets_.give_back(std::move(done.target));
+    if (glGetError() == GL_OUT_OF_MEMORY) {
+      done.job->drawn(no_memory(size));
+    } else {
+      done.job->drawn(std::move(done.pixels));
+    }
+    return true;
+  }
+
+ private:
+  struct InFlight {
+    std::shared_ptr<FrameJob> job;
+    RenderTargetPtr target;
+    PixelsPtr pixels;
+    GLsync fence;
+    bool reading;  ///< what the fence stands behind: reading, else drawing
+  };
+
+  static GLsync fence() {
+    GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glFlush();
+    return fence;
+  }
+  static Error no_memory(Size size) {
+    return fail(ErrorCode::Unavailable,
+                fmt::format("expected GPU memory for a picture of {} x {} pixels, found none; ask for a smaller one",
+                            size.width, size.height));
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+  RenderTargetPool targets_;
+  ReadbackPool readback_;
+  std::deque<InFlight> in_flight_;
+};
+
+RenderThread::RenderThread(RenderOptions options) : wanted_(!options.off) {
+  std::promise<void> opened;
+  std::future<void> ready = opened.get_future();
+  thread_ = std::thread([this, options, promise = std::move(opened)]() mutable { run(options, std::move(promise)); });
+  ready.wait();
+}
+
+RenderThread::~RenderThread() { stop(); }
+
+void RenderThread::submit(std::shared_ptr<FrameJob> job, std::int64_t deadline_us) {
+  std::unique_lock lock(mutex_);
+  if (stopping_) {
+    lock.unlock();
+    return job->drawn(fail(ErrorCode::Unavailable, "expected a server that draws, found it stopping"));
+  }
+  const auto later =
+      std::find_if(waiting_.begin(), waiting_.end(), [&](const Waiting& w) { return w.deadline_us > deadline_us; });
+  waiting_.insert(later, {std::move(job), deadline_us});
+  lock.unlock();
+  changed_.notify_one();
+}
+
+void RenderThread::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  changed_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+void RenderThread::run(RenderOptions options, std::promise<void> opened) {
+  Result<std::unique_ptr<EglContext>> context = options.off ? switched_off() : EglContext::open(&attempts_);
+  std::unique_ptr<Loop> loop;
+  if (context) {
+    Result<std::unique_ptr<Renderer>> renderer = Renderer::make(options.gpu_bytes);
+    if (renderer) {
+      const int samples = supported_samples(options.samples, (*context)->software());
+      loop = std::make_unique<Loop>(std::move(*renderer), samples);
+      device_ = fmt::format("{}, {} sample{} a pixel", (*context)->description(), samples, samples == 1 ? "" : "s");
+    } else {
+      device_ = renderer.error();
+    }
+  } else {
+    device_ = context.error();
+  }
+  opened.set_value();
+
+  for (;;) {
+    std::shared_ptr<FrameJob> next;
+    {
+      std::unique_lock lock(mutex_);
+      if (!loop || !loop->busy()) changed_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
+      if (!waiting_.empty() && (!loop || loop->has_room())) {
+        next = std::move(waiting_.front().job);
+        waiting_.erase(waiting_.begin());
+      } else if (stopping_ && (!loop || !loop->busy())) {
+        break;
+      }
+    }
+    if (next && !loop) {
+      next->drawn(device_.error());
+      continue;
+    }
+    const bool drew = next != nullptr;
+    if (drew) loop->draw(std::move(next));
+    while (loop && loop->busy() && loop->advance(0)) continue;
+    // With nothing else to do, sleep until the GPU has a step done; not for long: somebody may come with more work.
+    if (!drew && loop && loop->busy()) loop->advance(kPatience);
+  }
+  loop.reset();  // before the context
+}
+
+}  // namespace tweend::render

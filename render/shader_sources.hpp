@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string_view>
+
+namespace tweend::render::shaders {
+
+// The files of render/shaders, compiled in.
+extern const std::string_view kFrame;     ///< frame.glsl
+extern const std::string_view kTween;     ///< tween.glsl
+extern const std::string_view kMeshVert;  ///< mesh.vert
+extern const std::string_view kMeshFrag;  ///< mesh.frag
+extern const std::string_view kGridVert;  ///< grid.vert
+extern const std::string_view kGridFrag;  ///< grid.frag
+
+}  // namespace tweend::render::shaders

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "server/commands/stream_types.hpp"
+#include "server/net/connection.hpp"
+#include "server/net/http_routes.hpp"
+
+namespace tweend::net {
+
+/// A path /scenes/{scene}/{leaf}.
+struct ScenePath {
+  std::string scene;
+  std::string_view leaf;  ///< "frame.png", "stream.mjpg", …
+};
+[[nodiscard]] std::optional<ScenePath> parse_scene_path(std::string_view path);
+
+/// What the path has said already.
+struct Member {
+  std::string_view name;
+  std::string_view value;
+};
+/// The query's pairs as a JSON object: what reads as a JSON number becomes one, everything else a string. `token`, which
+/// says who asks and not what for, is left out.
+/// @return InvalidParams where the query says what the path says
+[[nodiscard]] Result<std::string> query_json(std::string_view target, std::initializer_list<Member> given);
+
+/// GET frame.png and frame.jpg: one picture.
+boost::asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const ScenePath& path, SessionContext& context);
+
+/// GET stream.mjpg: what is to be streamed, or the answer that says why not.
+[[nodiscard]] std::variant<commands::StreamOpenParams, HttpResponse> prepare_stream(const HttpRequest& request,
+                                                                                    const ScenePath& path,
+                                                                                    const SessionContext& context);
+/// Sends pictures, each a part of one endless answer (multipart/x-mixed-replace), until the client goes.
+boost::asio::awaitable<void> run_picture_session(Tcp::socket socket, commands::StreamOpenParams params,
+                                                 SessionContext& context);
+
+}  // namespace tweend::net

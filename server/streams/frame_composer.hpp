@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "render/picture.hpp"
+#include "server/model/camera.hpp"
+#include "server/stage/show.hpp"
+
+namespace tweend::streams {
+
+/// Turns what a scene shows into what is to be drawn: which keyframes of each actor with what weights, matrices, light.
+/// Keeps its memory from picture to picture. One thread at a time; the picture's spans last as long as the show.
+class FrameComposer {
+ public:
+  /// @param camera  empty, or one that can show nothing of this scene: the scene's
+  void compose(const stage::Show& show, const std::optional<model::CameraRequest>& camera, render::Size size,
+               render::Picture& out);
+
+ private:
+  /// What the renderer is told of an actor's mesh, made again only when it changes.
+  struct KnownMesh {
+    model::MeshPtr mesh;
+    render::MeshSourcePtr source;
+  };
+  void add_actor(const stage::ActorShow& show, std::size_t index, render::Picture& out);
+
+  std::vector<KnownMesh> meshes_;  ///< by the actor's index
+};
+
+}  // namespace tweend::streams

@@ -1,0 +1,154 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/cli/child_process.hpp"
+#include "tests/cli/pictures.hpp"
+#include "tests/cli/run_cli.hpp"
+
+namespace tweend::cli {
+namespace {
+
+using test::Folder;
+using test::frame_packet;
+using test::frame_stream;
+using test::jpeg;
+using test::png;
+using test::run_cli;
+
+const Json kNothing = Json::object();
+
+TEST(WatchFrames, PrintsALineAPacket) {
+  const auto run = run_cli(frame_stream(kNothing, frame_packet(1, 0, jpeg()) + frame_packet(2, 0, std::string(23'400, 'x'))),
+                           {"watch", "frames", "--count", "2"});
+  EXPECT_EQ(run.code, ExitCode::Done) << run.err;
+  EXPECT_NE(run.out.find("#1          1.250 s  age "), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find(" ms  key                 jpeg 640 x 360, 14 B\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("jpeg 640 x 360, 23.4 kB\n"), std::string::npos) << run.out;
+}
+
+TEST(WatchFrames, AsksForWhatTheOptionsSay) {
+  const Json params = Json::parse(R"({"scene":"two","rate":10,"width":640,"height":360,"encoding":"png","quality":70,
+                                      "camera":{"eye":[0,1,9],"up":[0,1,0]}})");
+  const auto run = run_cli(frame_stream(params, frame_packet(1, 1, png())),
+                           {"--scene", "two", "watch", "frames", "--count", "1", "--rate", "10", "--size", "640x360",
+                            "--encoding", "png", "--quality", "70", "--eye", "0,1,9", "--up", "0,1,0"});
+  EXPECT_EQ(run.code, ExitCode::Done) << run.err;
+  EXPECT_NE(run.out.find("png 640 x 360, 67 B\n"), std::string::npos) << run.out;
+}
+
+TEST(WatchFrames, StoresEachUnderItsNumber) {
+  const Folder folder;
+  const std::string out = folder.path("new/folder");
+  const auto packets = frame_packet(7, 0, jpeg()) + frame_packet(8, 1, png()) + frame_packet(1'234'567, 0, jpeg());
+  const auto run = run_cli(frame_stream(kNothing, packets), {"watch", "frames", "-o", out, "--count", "3"});
+  EXPECT_EQ(run.code, ExitCode::Done) << run.err;
+  EXPECT_EQ(folder.list("new/folder"), "frame_000007.jpg,frame_000008.png,frame_1234567.jpg,");
+  EXPECT_EQ(folder.read("new/folder/frame_000007.jpg"), jpeg());
+  EXPECT_EQ(folder.read("new/folder/frame_000008.png"), png());
+}
+
+TEST(WatchFrames, SumsUpWithTheGaps) {
+  const Folder folder;
+  const auto packets = frame_packet(3, 0, jpeg()) + frame_packet(4, 0, jpeg()) + frame_packet(9, 0, jpeg());
+  const auto run = run_cli(frame_stream(kNothing, packets), {"watch", "frames", "-o", folder.path("."), "--count", "3"});
+  EXPECT_EQ(run.out.rfind(folder.path(".") + ": 3 frames, ", 0), 0U) << run.out;
+  EXPECT_NE(run.out.find(" fps, 4 skipped, median age "), std::string::npos) << run.out;
+  EXPECT_EQ(run.out.substr(run.out.rfind(" ms, ")), " ms, 42 B\n");
+  EXPECT_EQ(run.err, "") << "nobody watches: there is no progress bar";
+}
+
+TEST(WatchFrames, DrawsAProgressBarOnATerminalAndCleansUp) {
+  const Folder folder;
+  const auto run = test::run_on_terminal(frame_stream(kNothing, frame_packet(3, 0, jpeg())),
+                                         {"watch", "frames", "-o", folder.path("."), "--count", "1"}, 80);
+  EXPECT_EQ(run.code, ExitCode::Done);
+  const std::string bar = run.err.substr(0, run.err.find('\r', 1));
+  EXPECT_EQ(bar, "\r[>" + std::string(39, ' ') + "]  0/1  ETA -:--");
+  EXPECT_TRUE(run.err.ends_with("\r" + std::string(bar.size() - 1, ' ') + "\r")) << run.err;
+  EXPECT_NE(run.out.find(": 1 frame, - fps, 0 skipped"), std::string::npos) << run.out;
+}
+
+TEST(WatchFrames, PrintsHeadersForPrograms) {
+  const Folder folder;
+  const auto line = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"--json", "watch", "frames", "--count", "1"});
+    const auto run = test::run_on_terminal(frame_stream(kNothing, frame_packet(3, 0, jpeg())), arguments, 80);
+    EXPECT_EQ(run.err, "") << "a bar would stand amid the lines";
+    Json json = Json::parse(run.out);
+    EXPECT_TRUE(json.at("age_us").is_number_integer());
+    json.erase("age_us");
+    return json;
+  };
+  Json expected = Json::parse(R"({"stream":4,"sequence":3,"media_us":1250000,"server_us":77,"revision":9,"flags":["key"],
+                                  "encoding":"jpeg","bytes":14})");
+  EXPECT_EQ(line({}), expected);
+  expected["file"] = folder.path("frame_000003.jpg");
+  EXPECT_EQ(line({"-o", folder.path("")}), expected);
+}
+
+TEST(WatchFrames, StopsAtWhatIsNoPicture) {
+  const Folder folder;
+  const auto complaint = [&](const std::string& packet) {
+    const auto run = run_cli(frame_stream(kNothing, packet), {"watch", "frames", "-o", folder.path(".")});
+    EXPECT_EQ(run.code, ExitCode::NoServer);
+    EXPECT_NE(run.out.find(": 0 frames, - fps, 0 skipped"), std::string::npos) << run.out;
+    return run.err;
+  };
+  EXPECT_EQ(complaint(frame_packet(3, 2, "x")),
+            "tweenctl: packet 3: expected a frame in jpeg or png, found kind 3 in encoding 2\n");
+  EXPECT_EQ(complaint(test::packet({}, std::vector<float>{1.0F})),
+            "tweenctl: packet 0: expected a frame in jpeg or png, found kind 2 in encoding 0\n");
+  EXPECT_EQ(complaint(frame_packet(3, 0, "")),
+            "tweenctl: packet 3 sent no jpeg picture: expected bytes that start with ff d8 ff, found nothing\n");
+  EXPECT_EQ(folder.list(), "");
+}
+
+TEST(WatchFrames, SumsUpWhatCameBeforeTheEnd) {
+  const Folder folder;
+  const auto end = test::event("stream.ended", {{"stream", 4}, {"reason", "the scene was removed"}});
+  const auto run =
+      run_cli(frame_stream(kNothing, frame_packet(3, 0, jpeg()) + end), {"watch", "frames", "-o", folder.path(".")});
+  EXPECT_EQ(run.code, ExitCode::Refused);
+  EXPECT_EQ(run.err, "tweenctl: the stream has ended: the scene was removed\n");
+  EXPECT_NE(run.out.find(": 1 frame, "), std::string::npos) << run.out;
+}
+
+TEST(WatchFrames, AFolderThatCantBeMadeIsAWrongCommandLine) {
+  const Folder folder;
+  std::ofstream(folder.path("file")) << "here";
+  for (const char* name : {"file", "file/below"}) {
+    const auto run = test::run_alone({"watch", "frames", "-o", folder.path(name)});
+    EXPECT_EQ(run.code, ExitCode::Usage);
+    EXPECT_EQ(run.err, "tweenctl: can't make the folder " + folder.path(name) +
+                           ": expected one, or a place for it, found: Not a directory\n");
+  }
+}
+
+TEST(WatchFrames, AFileThatCantBeWrittenEndsIt) {
+  const Folder folder;
+  std::filesystem::create_directory(folder.path("frame_000004.jpg"));
+  const auto packets = frame_packet(3, 0, jpeg()) + frame_packet(4, 0, jpeg());
+  const auto run = run_cli(frame_stream(kNothing, packets), {"watch", "frames", "-o", folder.path("")});
+  EXPECT_EQ(run.code, ExitCode::Refused);
+  EXPECT_EQ(run.err, "tweenctl: can't write " + folder.path("frame_000004.jpg") +
+                         ": expected a place for 14 B, found: Is a directory\n");
+  EXPECT_EQ(folder.list(), "frame_000003.jpg,frame_000004.jpg,");
+}
+
+TEST(WatchFrames, AnInterruptSumsUp) {
+  const Folder folder;
+  test::FakeServer server(frame_stream(kNothing, frame_packet(3, 0, jpeg())));
+  test::ChildProcess child({TWEENCTL, "--server", server.address(), "watch", "frames", "-o", folder.path(".")});
+  while (!std::filesystem::exists(folder.path("frame_000003.jpg"))) std::this_thread::yield();
+  child.send_signal(SIGINT);
+  EXPECT_NE(child.read_all().find(": 1 frame, - fps, 0 skipped"), std::string::npos);
+  EXPECT_EQ(child.wait(), 130);
+}
+
+}  // namespace
+}  // namespace tweend::cli
