@@ -42,14 +42,16 @@ export class TweendPage {
    * @param {import("playwright-core").Browser} browser
    * @param {string} url
    * @param {import("playwright-core").BrowserContextOptions} [options]
+   * @param {(page: import("playwright-core").Page) => Promise<void>} [prepare]  before it is loaded
    */
-  static async open(browser, url, options = kDesk) {
+  static async open(browser, url, options = kDesk, prepare = async () => {}) {
     const self = new TweendPage();
     self.context = await browser.newContext(options);
     self.page = await self.context.newPage();
     self.page.on("console", (m) => ["error", "warning"].includes(m.type()) && self.problems.push(m.text())); // CSP's too
     self.page.on("pageerror", (e) => self.problems.push(String(e)));
     self.page.on("requestfailed", (r) => self.problems.push(`${r.url()}: ${r.failure()?.errorText}`));
+    await prepare(self.page);
     await self.page.goto(url);
     return self;
   }

@@ -158,9 +158,6 @@ const handlers = {
     change(p, { time: wrapped(seconds === undefined ? key * gap : p.time + seconds) });
   }),
   "playback.set": playback((p, { speed, loop }) => {
-    if (speed !== undefined && Math.abs(speed) > 1000) {
-      throw new Refusal(-32602, "invalid_params", "params.speed", `expected a speed from -1000 to 1000, found ${speed}`);
-    }
     change(p, { ...(speed === undefined ? {} : { speed }), ...(loop ? { loop } : {}) });
   }),
   "actor.update": (params) => {
