@@ -17,6 +17,21 @@ class Pages(harness.TestCase):
             self.assertTrue(body)
             self.assertIn("content-type", headers)
 
+    def test_the_page_brings_its_policy_and_is_sent_once(self):
+        status, headers, body = self.server.http("GET", "/")
+        self.assertEqual((status, headers["content-type"]), (200, "text/html; charset=utf-8"))
+        self.assertTrue(headers["content-security-policy"].startswith("default-src 'none'; script-src 'self'"))
+        self.assertEqual((headers["cache-control"], headers["x-content-type-options"]), ("no-cache", "nosniff"))
+        c = self.server.http_client()
+        for _ in range(2):  # the connection lives on
+            status, again, rest = c.ask("GET", "/index.html", headers={"If-None-Match": headers["etag"]})
+            self.assertEqual((status, rest, again["etag"]), (304, b"", headers["etag"]))
+        status, headers, script = c.ask("GET", "/controls/transport.js?x=1")
+        self.assertEqual((status, headers["content-type"]), (200, "text/javascript; charset=utf-8"))
+        for path in ("/controls", "/controls/../index.html", "/CMakeLists.txt", "/package.json", "/%69ndex.html"):
+            self.assertEqual(c.ask("GET", path)[0], 404, path)
+        self.assertEqual(c.ask("POST", "/main.js")[0], 405)
+
     def test_metrics_are_prometheus_text(self):
         self.add_moving()
         status, headers, body = self.server.http("GET", "/metrics")

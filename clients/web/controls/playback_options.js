@@ -40,6 +40,7 @@ export function show_playback_options(store, actions) {
     if (Number.isFinite(exact.valueAsNumber)) actions.set_speed(exact.valueAsNumber);
     else write_speed(); // nothing that could be sent was typed
   });
+  exact.addEventListener("blur", write_speed); // whatever was typed, this is what is
   element("reverse", HTMLButtonElement).addEventListener("click", () => {
     const lead = lead_player(store.state);
     if (lead) actions.set_speed(-lead.speed);

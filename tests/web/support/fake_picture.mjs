@@ -1,10 +1,10 @@
 /**
  * Pictures of nothing in particular that move with time and camera, for the fake server.
  */
-import { crc32, deflateSync } from "node:zlib";
+import * as zlib from "node:zlib";
 
-/** @type {(data: Buffer) => number} Node 20 has no zlib.crc32 before 20.15 */
-const checksum = crc32 ?? ((data) => {
+/** @type {(data: Buffer) => number} older Node has no zlib.crc32 */
+const checksum = zlib.crc32 ?? ((data) => {
   let crc = ~0;
   for (const byte of data) {
     crc ^= byte;
@@ -30,7 +30,7 @@ function png(width, height, rows) {
   head.writeUInt32BE(height, 4);
   head.set([8, 2, 0, 0, 0], 8);
   const signature = Buffer.from([0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a]);
-  return Buffer.concat([signature, chunk("IHDR", head), chunk("IDAT", deflateSync(rows, { level: 1 })), chunk("IEND", Buffer.alloc(0))]);
+  return Buffer.concat([signature, chunk("IHDR", head), chunk("IDAT", zlib.deflateSync(rows, { level: 1 })), chunk("IEND", Buffer.alloc(0))]);
 }
 
 const kPoints = 900;

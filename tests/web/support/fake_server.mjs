@@ -94,17 +94,20 @@ class Client {
     this.socket.send(message);
   }
 
-  receive({ id, method, params }) {
-    const answer = { jsonrpc: "2.0", id };
-    try {
-      const handler = handlers[method];
-      if (!handler) throw new Refusal(-32601, "unknown_method", "", `expected a method, found "${method}"`);
-      answer.result = handler(params, this) ?? {};
-    } catch (error) {
-      if (!(error instanceof Refusal)) throw error;
-      answer.error = error.error;
-    }
-    this.send(JSON.stringify(answer));
+  receive(request) {
+    this.send(answer(request, this));
+  }
+}
+
+function answer({ id, method, params }, client) {
+  try {
+    const handler = handlers[method];
+    if (!handler) throw new Refusal(-32601, "unknown_method", "", `expected a method, found "${method}"`);
+    if (params.scene && params.scene !== "main") throw new Refusal(-32001, "not_found", "params.scene", `found no scene "${params.scene}"`);
+    return JSON.stringify({ jsonrpc: "2.0", id, result: handler(params, client) ?? {} });
+  } catch (error) {
+    if (!(error instanceof Refusal)) throw error;
+    return JSON.stringify({ jsonrpc: "2.0", id, error: error.error });
   }
 }
 
@@ -141,18 +144,20 @@ const handlers = {
   "scene.describe": () => scene,
   "events.subscribe": (_, client) => void (client.subscribed = true),
   "playback.get": (params) => message_of(chosen(params)),
-  "playback.play": playback((p) => change(p, { playing: true })),
+  "playback.play": playback((p) => {
+    change(p, { playing: true });
+    if (p.loop === "once" && p.time === kDuration) p.time = 0;
+  }),
   "playback.pause": playback((p) => change(p, { playing: false })),
   "playback.stop": playback((p) => change(p, { playing: false, time: 0 })),
   "playback.seek": playback((p, { time }) => change(p, { time: wrapped(time) })),
   "playback.step": playback((p, { seconds, keyframes }) => {
     change(p, { playing: false });
-    change(p, { time: wrapped(p.time + (seconds ?? (keyframes * kDuration) / 4)) });
+    const gap = kDuration / 4;
+    const key = keyframes > 0 ? Math.floor(p.time / gap + 1e-6) + 1 : Math.ceil(p.time / gap - 1e-6) - 1;
+    change(p, { time: wrapped(seconds === undefined ? key * gap : p.time + seconds) });
   }),
   "playback.set": playback((p, { speed, loop }) => {
-    if (speed !== undefined && Math.abs(speed) > 1000) {
-      throw new Refusal(-32602, "invalid_params", "params.speed", `expected a speed from -1000 to 1000, found ${speed}`);
-    }
     change(p, { ...(speed === undefined ? {} : { speed }), ...(loop ? { loop } : {}) });
   }),
   "actor.update": (params) => {
@@ -197,7 +202,17 @@ function packet(stream, at_us) {
   return Buffer.concat([head, payload]);
 }
 
+function end_what_has_run_out() {
+  for (const p of players) {
+    const time = time_at(p, now_us());
+    if (!p.playing || p.loop !== "once" || time !== (p.speed < 0 ? 0 : kDuration)) continue;
+    change(p, { playing: false });
+    tell("playback.ended", { scene: "main", actor: p.actor, clip: p.clip });
+  }
+}
+
 setInterval(() => {
+  end_what_has_run_out();
   for (const client of clients) {
     for (const stream of client.streams.values()) {
       const at_us = now_us();
@@ -213,6 +228,12 @@ setInterval(() => {
 // ------------------------------------------------------------------------------------------------------------------ HTTP
 const server = createServer((request, response) => {
   const path = normalize(new URL(request.url, "http://x").pathname);
+  if (path === "/rpc") {
+    let body = "";
+    request.on("data", (bytes) => (body += bytes));
+    request.on("end", () => response.writeHead(200, { "Content-Type": "application/json" }).end(answer(JSON.parse(body), null)));
+    return;
+  }
   try {
     const body = readFileSync(join(kPage, path === "/" ? "index.html" : path));
     const type = kTypes[path === "/" ? ".html" : extname(path)];
