@@ -24,32 +24,29 @@ Hub::Producers::iterator Hub::find(const StreamKey& key) {
   return std::find_if(producers_.begin(), producers_.end(), [&key](const auto& p) { return p->key() == key; });
 }
 
-/// Null: what it asks for is not there.
-std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key, const stage::SceneViewPtr& view) {
+std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key) {
   const Producer::Environment environment{stage_.strand(), mailbox_, metrics_, [this] { progressed(); }};
-  auto producer =
-      std::make_shared<Producer>(key, ++last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
-        if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
-          return std::make_shared<FrameContent>(*frames, stage_.strand(), workers_, renderer_, owner);
-        }
-        return std::make_shared<VerticesContent>(std::get<VerticesSpec>(key.what), key.scene, stage_.strand(), workers_, owner);
-      });
-  return producer->follow(view) ? producer : nullptr;
+  return std::make_shared<Producer>(key, ++last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
+    if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
+      return std::make_shared<FrameContent>(*frames, stage_.strand(), workers_, renderer_, owner);
+    }
+    return std::make_shared<VerticesContent>(std::get<VerticesSpec>(key.what), key.scene, stage_.strand(), workers_, owner);
+  });
+}
+
+void Hub::refuse(Subscription subscription, std::string reason) {
+  mailbox_.call([subscription = std::move(subscription), reason = std::move(reason)] {
+    if (const auto sink = subscription.sink.lock()) sink->ended(subscription.stream, reason);
+  });
 }
 
 void Hub::subscribe(const StreamKey& key, Subscription subscription) {
   const auto at = find(key);
   if (at != producers_.end()) return (*at)->add(std::move(subscription));
   const stage::SceneViewPtr view = stage_.view()->find(key.scene);
-  const std::shared_ptr<Producer> producer = view ? make_producer(key, view) : nullptr;
-  if (!producer) {
-    mailbox_.call([subscription = std::move(subscription), scene = key.scene] {
-      if (const auto sink = subscription.sink.lock()) {
-        sink->ended(subscription.stream, fmt::format("what it shows of the scene \"{}\" was removed", scene));
-      }
-    });
-    return;
-  }
+  if (!view) return refuse(std::move(subscription), fmt::format("the scene \"{}\" was removed", key.scene));
+  const std::shared_ptr<Producer> producer = make_producer(key);
+  if (!producer->follow(view)) return refuse(std::move(subscription), producer->what_is_gone());
   producers_.push_back(producer);
   metrics_.producers = static_cast<std::int64_t>(producers_.size());
   producer->add(std::move(subscription));
@@ -79,7 +76,7 @@ void Hub::follow(const std::string& scene, const stage::SceneViewPtr& view) {
     if (!view) {
       producer->end(fmt::format("the scene \"{}\" was removed", scene));
     } else if (!producer->follow(view)) {
-      producer->end_gone();
+      producer->end(producer->what_is_gone());
     }
   }
   drop_idle();

@@ -43,7 +43,8 @@ class Hub {
   };
   using Producers = std::vector<std::shared_ptr<Producer>>;
   [[nodiscard]] Producers::iterator find(const StreamKey& key);
-  [[nodiscard]] std::shared_ptr<Producer> make_producer(const StreamKey& key, const stage::SceneViewPtr& view);
+  [[nodiscard]] std::shared_ptr<Producer> make_producer(const StreamKey& key);
+  void refuse(Subscription subscription, std::string reason);
   void progressed();
   [[nodiscard]] bool delivered(const Waiter& waiter) const;
   void drop_idle();

@@ -52,8 +52,8 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
   void retune(StreamKey key);
   /// Tells all subscribers and forgets them.
   void end(const std::string& reason);
-  /// The same, for a content that follow() found gone.
-  void end_gone() { end(content_->what_is_gone()); }
+  /// What follow() said no to, for the clients.
+  [[nodiscard]] std::string what_is_gone() const { return content_->what_is_gone(); }
   void stop();
 
   // ContentOwner
