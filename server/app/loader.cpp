@@ -19,6 +19,20 @@ Result<commands::Params> parameters(const Command& command, const std::string& j
   return commands::decode_params(command, value);
 }
 
+}  // namespace
+
+std::string actor_name(const std::string& asset) {
+  std::string name = asset.substr(asset.find_last_of('/') + 1);
+  if (const auto dot = name.find_last_of('.'); dot != std::string::npos && dot > 0) name.resize(dot);
+  const auto bad = [](char c) {
+    return !((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '-');
+  };
+  std::replace_if(name.begin(), name.end(), bad, '_');
+  if (name.empty() || name.front() == '.') name.insert(0, 1, '_');
+  name.resize(std::min<std::size_t>(name.size(), 64));
+  return name;
+}
+
 Status run_edit(const commands::Services& services, std::string_view method, const std::string& json) {
   const Command& command = *commands::find_command(method);
   TWEEND_ASSIGN(const commands::Params params, parameters(command, json, services.limits));
@@ -33,20 +47,6 @@ Status run_edit(const commands::Services& services, std::string_view method, con
       },
       [&promise](const Result<std::string>& result) { promise.set_value(result ? Status() : Status(result.error())); });
   return promise.get_future().get();
-}
-
-}  // namespace
-
-std::string actor_name(const std::string& asset) {
-  std::string name = asset.substr(asset.find_last_of('/') + 1);
-  if (const auto dot = name.find_last_of('.'); dot != std::string::npos && dot > 0) name.resize(dot);
-  const auto bad = [](char c) {
-    return !((c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_' || c == '.' || c == '-');
-  };
-  std::replace_if(name.begin(), name.end(), bad, '_');
-  if (name.empty() || name.front() == '.') name.insert(0, 1, '_');
-  name.resize(std::min<std::size_t>(name.size(), 64));
-  return name;
 }
 
 Status load_asset(const commands::Services& services, const std::string& asset) {

@@ -1,7 +1,20 @@
+#include <variant>
+
+#include "server/app/doctor.hpp"
 #include "server/app/options.hpp"
 #include "server/app/serve.hpp"
 
-int main(int argc, char** argv) {
-  const tweend::app::CommandLine line = tweend::app::parse_command_line(argc, argv);
-  return line.serve ? tweend::app::serve(line.options) : line.exit_code;
-}
+namespace {
+
+using namespace tweend::app;
+
+struct Run {
+  int operator()(int exit_code) const { return exit_code; }
+  int operator()(const ServeOptions& options) const { return serve(options); }
+  int operator()(const OfflineOptions& options) const { return render_offline(options); }
+  int operator()(const DoctorOptions&) const { return doctor(); }
+};
+
+}  // namespace
+
+int main(int argc, char** argv) { return std::visit(Run(), parse_command_line(argc, argv)); }

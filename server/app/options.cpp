@@ -36,7 +36,8 @@ void add_serve_options(CLI::App& serve, ServeOptions& o) {
       ->check(CLI::Range(1, 16));
 }
 
-void add_limit_options(CLI::App& serve, Limits& l) {
+void add_limit_options(CLI::App& serve, ServeOptions& o) {
+  Limits& l = o.limits;
   const auto add = [&serve](const char* name, std::size_t& value, const char* help) {
     serve.add_option(name, value, help)->type_name("N")->capture_default_str()->check(CLI::PositiveNumber)->group("Limits");
   };
@@ -52,8 +53,44 @@ void add_limit_options(CLI::App& serve, Limits& l) {
   add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
   add("--max-undo", l.undo_steps, "Steps that can be undone");
   add("--max-frame-side", l.frame_side, "Pixels of a picture's width, and of its height");
+  add("--max-gpu-bytes", o.render.gpu_bytes, "Bytes of the GPU's memory for meshes and keyframes");
   add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");
   add("--max-texture-pixels", l.texture_pixels, "Pixels of a texture");
+}
+
+void add_offline_options(CLI::App& render, OfflineOptions& o) {
+  render.add_option("ASSET", o.assets, "OBJ files and sequences' folders; several stand side by side")->required();
+  render.add_option("--at", o.times_s, "Media times, seconds")->type_name("T[,T...]")->delimiter(',');
+  render.add_option("-o,--output", o.output, "Where to: .png or .jpg, with %d for the picture's number")
+      ->type_name("FILE")
+      ->capture_default_str();
+  render.add_flag("--sheet", o.sheet, "All pictures in one");
+  render.add_option("--size", o.size, "Of each picture, pixels")->type_name("WxH")->delimiter('x')->capture_default_str();
+  render.add_option("--fps", o.fps, "Frames a second of a sequence")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  render.add_flag("--closed", o.closed, "The clip blends from its last keyframe back to the first");
+  render.add_option("--duration", o.duration_s, "Of the clip, seconds")->type_name("S")->check(CLI::PositiveNumber);
+  render.add_option("--interpolation", o.interpolation, "step, linear or catmull_rom; one for each asset, or one for all")
+      ->type_name("MODE[,MODE...]")
+      ->delimiter(',');
+  render
+      .add_option("--orbit", o.orbit_deg,
+                  "Where to look from: degrees from +Z towards +X, and above the ground; all is in view")
+      ->type_name("A,E")
+      ->delimiter(',')
+      ->capture_default_str();
+  render.add_option("--eye", o.eye, "Where to look from, in place of --orbit")->type_name("X,Y,Z")->delimiter(',')->expected(3);
+  render.add_option("--target", o.target, "What to look at")->type_name("X,Y,Z")->delimiter(',')->expected(3);
+  render.add_option("--background", o.background, "sRGB, each 0 to 1")->type_name("R,G,B")->delimiter(',')->expected(3);
+  render.add_option("--light", o.light, "Where the light stands")->type_name("X,Y,Z")->delimiter(',')->expected(3);
+  render.add_flag("--grid", o.grid, "Draw the ground");
+  render.add_option("--samples", o.render.samples, "Samples a pixel")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 16));
+  render.add_option("--quality", o.quality, "Of a .jpg")->type_name("N")->capture_default_str()->check(CLI::Range(1, 100));
 }
 
 void print_commands() {
@@ -65,32 +102,35 @@ void print_commands() {
 }  // namespace
 
 CommandLine parse_command_line(int argc, char** argv) {
-  CommandLine line;
   CLI::App app{"tweend: headless keyframe-animation playback server"};
   app.set_version_flag("--version", std::string("tweend ") + TWEEND_VERSION);
   bool list_commands = false;
   app.add_flag("--list-commands", list_commands, "Print every method with its role and meaning");
   app.require_subcommand(0, 1);
+  ServeOptions serve_options;
   CLI::App& serve = *app.add_subcommand("serve", "Open the port and serve until SIGTERM or SIGINT");
-  add_serve_options(serve, line.options);
-  add_limit_options(serve, line.options.limits);
+  add_serve_options(serve, serve_options);
+  add_limit_options(serve, serve_options);
+  OfflineOptions offline_options;
+  CLI::App& render = *app.add_subcommand("render", "Draw assets to picture files, without a server");
+  add_offline_options(render, offline_options);
+  const CLI::App& doctor = *app.add_subcommand("doctor", "Which devices there are to draw with, and why one was not taken");
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     const bool asked = error.get_exit_code() == 0;  // --help, --version
     app.exit(error, std::cout, std::cerr);
-    line.exit_code = asked ? 0 : 2;
-    return line;
+    return asked ? 0 : 2;
   }
+  if (serve.parsed()) return serve_options;
+  if (render.parsed()) return offline_options;
+  if (doctor.parsed()) return DoctorOptions{};
   if (list_commands) {
     print_commands();
-  } else if (serve.parsed()) {
-    line.serve = true;
-  } else {
-    std::cerr << app.help();
-    line.exit_code = 2;
+    return 0;
   }
-  return line;
+  std::cerr << app.help();
+  return 2;
 }
 
 }  // namespace tweend::app

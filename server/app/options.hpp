@@ -1,9 +1,11 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "render/render_thread.hpp"
+#include "server/app/render_offline.hpp"
 #include "server/base/limits.hpp"
 #include "server/net/network.hpp"
 
@@ -24,12 +26,11 @@ struct ServeOptions {
   Limits limits;
 };
 
-/// What the command line asked for: to serve, or to end at once with a code (help, version, a mistake).
-struct CommandLine {
-  bool serve = false;
-  int exit_code = 0;
-  ServeOptions options;
-};
+/// `tweend doctor`
+struct DoctorOptions {};
+
+/// What the command line asked for; an int: to end at once with this code (help, version, a mistake).
+using CommandLine = std::variant<int, ServeOptions, OfflineOptions, DoctorOptions>;
 
 /// Reads the command line; prints help, version, the methods or what was wrong.
 [[nodiscard]] CommandLine parse_command_line(int argc, char** argv);

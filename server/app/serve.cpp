@@ -7,22 +7,20 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <boost/asio/ip/address.hpp>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <future>
 #include <iostream>
 #include <thread>
 #include <utility>
 
+#include "server/app/engine.hpp"
 #include "server/app/loader.hpp"
 #include "server/app/page.hpp"
 #include "server/base/log.hpp"
-#include "server/store/memory_store.hpp"
 
 namespace tweend::app {
 namespace {
@@ -92,15 +90,6 @@ Status check_access(const ServeOptions& options, const net::Endpoint& endpoint) 
   return {};
 }
 
-Result<std::vector<assets::AssetRoot>> open_roots(const std::vector<std::string>& folders) {
-  std::vector<assets::AssetRoot> roots;
-  for (const std::string& folder : folders) {
-    TWEEND_ASSIGN(assets::AssetRoot root, assets::AssetRoot::open(folder));
-    roots.push_back(std::move(root));
-  }
-  return roots;
-}
-
 /// Whole or not at all: who waits for the file never reads half a number.
 Status write_port_file(const std::string& file, std::uint16_t port) {
   if (file.empty()) return {};
@@ -114,57 +103,40 @@ Status write_port_file(const std::string& file, std::uint16_t port) {
                           error.message()));
 }
 
-/// Everything that runs, from the bottom up; taken down the other way round.
+/// The port before the engine.
 class Server {
  public:
-  Server(const ServeOptions& options, assets::AssetLibrary library)
-      : options_(options), library_(std::move(library)), stage_(store_, options_.limits, metrics_) {}
+  Server(const ServeOptions& options, std::vector<assets::AssetRoot> roots)
+      : options_(options), engine_(options.limits, std::move(roots), options.render, metrics_, network_.post()) {}
 
   Status start(const net::Endpoint& endpoint) {
-    if (renderer_.device()) {
-      log::info("drawing with " + *renderer_.device());
-    } else if (renderer_.wanted()) {
-      log::warn("no pictures: " + renderer_.device().error().message);
+    const commands::Services& services = engine_.services();
+    if (const auto& device = engine_.renderer().device()) {
+      log::info("drawing with " + *device);
+    } else if (engine_.renderer().wanted()) {
+      log::warn("no pictures: " + device.error().message);
     }
-    TWEEND_TRY(stage_.start(events_));
-    staged_ = true;
-    for (const std::string& asset : options_.load) TWEEND_TRY(load_asset(services_, asset));
-    if (options_.play) TWEEND_TRY(play_all(services_));
+    TWEEND_TRY(engine_.start());
+    for (const std::string& asset : options_.load) TWEEND_TRY(load_asset(services, asset));
+    if (options_.play) TWEEND_TRY(play_all(services));
     TWEEND_ASSIGN(net::WebFiles page, load_page(options_.web));
-    TWEEND_TRY(network_.start({endpoint, options_.allowed_origins, std::move(page)}, services_));
+    TWEEND_TRY(network_.start({endpoint, options_.allowed_origins, std::move(page)}, services));
     return write_port_file(options_.port_file, network_.endpoint().port);
   }
 
   [[nodiscard]] const net::Endpoint& endpoint() const noexcept { return network_.endpoint(); }
 
-  /// Answers what has been asked, commits what was accepted, stops every thread.
+  /// Answers what has been asked, then stops.
   void stop() {
     network_.stop();
-    if (!staged_) return;
-    std::promise<void> quiet;
-    stage_.post([&] {
-      hub_.stop();
-      quiet.set_value();
-    });
-    quiet.get_future().wait();
-    renderer_.stop();  // before the workers, which still encode what it has drawn
-    workers_.stop();   // before the stage, on which evaluations under way still end
-    stage_.stop();
+    engine_.stop();
   }
 
  private:
-  ServeOptions options_;
-  bool staged_ = false;
+  const ServeOptions options_;
   Metrics metrics_;
-  assets::AssetLibrary library_;
-  store::MemoryStore store_;
   net::Network network_;
-  WorkerPool workers_{std::max(2U, std::thread::hardware_concurrency())};
-  render::RenderThread renderer_{options_.render};
-  stage::Stage stage_;
-  streams::Hub hub_{stage_, workers_, renderer_, network_.post(), metrics_};
-  commands::EventHub events_{hub_, network_.post(), metrics_};
-  commands::Services services_{options_.limits, metrics_, library_, stage_, hub_, events_, workers_, renderer_};
+  Engine engine_;
 };
 
 Status run(const ServeOptions& options) {
@@ -175,7 +147,7 @@ Status run(const ServeOptions& options) {
   DataFolder data;
   if (!options.data.empty()) TWEEND_TRY(data.open(options.data));
   TWEEND_ASSIGN(std::vector<assets::AssetRoot> roots, open_roots(options.assets));
-  Server server(options, assets::AssetLibrary(std::move(roots), options.limits));
+  Server server(options, std::move(roots));
   if (Status started = server.start(endpoint); !started) {
     server.stop();
     return started;

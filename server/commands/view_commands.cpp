@@ -49,7 +49,7 @@ struct LightResult {
 
 Result<CameraResult> set_camera(const CameraParams& p, EditContext& context) {
   model::SceneSettings settings = context.scene().settings;
-  auto placed = model::place(settings.camera, p.request(), model::bounding_sphere(context.scene()));
+  auto placed = model::place(settings.camera, p.request(), model::visible_bounds(context.scene()));
   if (!placed) return fail(placed.error().code, placed.error().message, "params." + placed.error().path);
   settings.camera = *placed;
   context.transaction.apply(stage::SetSceneSettings{settings});
@@ -68,7 +68,7 @@ Result<LightResult> set_light(const LightParams& p, EditContext& context) {
 }  // namespace
 
 Status check_own_camera(const OwnCamera& camera, const model::Scene& scene) {
-  const auto placed = model::place(scene.settings.camera, camera.request(), model::bounding_sphere(scene));
+  const auto placed = model::place(scene.settings.camera, camera.request(), model::visible_bounds(scene));
   if (placed) return {};
   return fail(placed.error().code, placed.error().message, "params.camera." + placed.error().path);
 }

@@ -15,18 +15,35 @@ Camera orbit(Camera camera, float azimuth, float elevation, float distance) noex
   return camera;
 }
 
-Camera fit(Camera camera, const Sphere& sphere, float aspect) noexcept {
+Camera fit(Camera camera, const Bounds& box, float aspect) noexcept {
   constexpr float kMargin = 1.05F;
-  const float radius = std::max(sphere.radius, 1e-3F) * kMargin;
+  const glm::vec3 center = (box.min + box.max) * 0.5F;
+  const float radius = std::max(glm::length(box.max - box.min) * 0.5F, 1e-3F) * kMargin;
   glm::vec3 back = camera.eye - camera.target;
   back = glm::length(back) > 0.0F ? glm::normalize(back) : glm::vec3(0.0F, 0.0F, 1.0F);
-  // The cone of the field of view touches the ball at this distance (sin, not tan: a ball, not a disc).
-  const float half_y = camera.fov_y / 2.0F;
-  const float half = aspect < 1.0F ? std::atan(std::tan(half_y) * aspect) : half_y;
-  const float distance = radius / std::sin(half);
-  camera.target = sphere.center;
-  camera.eye = sphere.center + distance * back;
-  camera.near = std::max((distance - radius) * 0.1F, distance * 1e-3F);
+  glm::vec3 right = glm::cross(camera.up, back);
+  // Looking along `up` any side is as good as another; such a camera is refused later.
+  right = glm::length(right) > 0.0F ? glm::normalize(right) : glm::vec3(1.0F, 0.0F, 0.0F);
+  const glm::vec3 up = glm::cross(back, right);
+
+  // How far each corner has to be from the eye for the picture's sides to be beyond it.
+  const float half_height = std::tan(camera.fov_y / 2.0F);
+  const float half_width = half_height * aspect;
+  float distance = 0.0F, nearest = -radius;
+  for (int i = 0; i < 8; ++i) {
+    const glm::vec3 corner = kMargin * (glm::vec3((i & 1) != 0 ? box.max.x : box.min.x, (i & 2) != 0 ? box.max.y : box.min.y,
+                                                  (i & 4) != 0 ? box.max.z : box.min.z) -
+                                        center);
+    // Not less than a tenth of the whole: of a rod seen from its end there is still something to keep away from.
+    const float x = std::max(std::abs(glm::dot(corner, right)), 0.1F * radius);
+    const float y = std::max(std::abs(glm::dot(corner, up)), 0.1F * radius);
+    const float z = glm::dot(corner, back);
+    distance = std::max({distance, z + x / half_width, z + y / half_height});
+    nearest = std::max(nearest, z);
+  }
+  camera.target = center;
+  camera.eye = center + distance * back;
+  camera.near = std::max((distance - nearest) * 0.1F, distance * 1e-4F);
   camera.far = (distance + radius) * 10.0F;
   return camera;
 }
@@ -47,7 +64,7 @@ Status check(const Camera& camera) {
 
 }  // namespace
 
-Result<Camera> place(Camera camera, const CameraRequest& request, const std::optional<Sphere>& visible, float aspect) {
+Result<Camera> place(Camera camera, const CameraRequest& request, const std::optional<Bounds>& visible, float aspect) {
   camera.eye = request.eye.value_or(camera.eye);
   camera.target = request.target.value_or(camera.target);
   camera.up = request.up.value_or(camera.up);

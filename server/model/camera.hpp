@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "server/base/result.hpp"
+#include "server/model/bounds.hpp"
 
 namespace tweend::model {
 
@@ -19,20 +20,15 @@ struct Camera {
   bool operator==(const Camera&) const = default;
 };
 
-/// A ball that holds what should be seen, world space, metres.
-struct Sphere {
-  glm::vec3 center{0.0F};
-  float radius = 0.0F;
-};
-
 /// Places the eye on a sphere around the target: eye = target + distance · (sin a cos e, sin e, cos a cos e),
 /// a the azimuth from +Z towards +X, e the elevation above the XZ plane (radians).
 [[nodiscard]] Camera orbit(Camera camera, float azimuth, float elevation, float distance) noexcept;
 
-/// Keeps the direction and moves eye and target so that the whole ball is in view in a picture of this shape;
-/// near and far then bracket it generously. A ball of no radius is given one.
+/// Keeps the direction and moves eye and target so that the whole box is in view in a picture of this shape;
+/// near and far then bracket it generously. A box of no size is given one.
+/// @param box     world space
 /// @param aspect  width / height; a tall picture's narrower side counts
-[[nodiscard]] Camera fit(Camera camera, const Sphere& sphere, float aspect = 1.0F) noexcept;
+[[nodiscard]] Camera fit(Camera camera, const Bounds& box, float aspect = 1.0F) noexcept;
 
 struct OrbitRequest {
   float azimuth = 0.0F;           ///< radians
@@ -55,7 +51,7 @@ struct CameraRequest {
 /// @param visible  what `fit` brings into view; without it `fit` changes nothing
 /// @param aspect   of the picture to be fitted into; that of a square fits every wide one
 /// @return InvalidParams, path "eye", "up" or "near", where it could show nothing
-[[nodiscard]] Result<Camera> place(Camera camera, const CameraRequest& request, const std::optional<Sphere>& visible,
+[[nodiscard]] Result<Camera> place(Camera camera, const CameraRequest& request, const std::optional<Bounds>& visible,
                                    float aspect = 1.0F);
 
 /// From world to view space: x right, y up, looking along -z.

@@ -11,9 +11,21 @@ namespace {
 
 Bounds joined(const Bounds& a, const Bounds& b) noexcept { return {glm::min(a.min, b.min), glm::max(a.max, b.max)}; }
 
+/// Whether all keys are as far apart, over a closed clip's seam as well.
+bool evenly_spaced(const Clip& clip) noexcept {
+  const std::vector<double>& t = clip.times_s;
+  if (t.size() < 2) return true;
+  const double gap = t[1] - t[0];
+  const auto differs = [gap](double other) { return std::abs(other - gap) > 1e-3 * gap; };
+  for (std::size_t i = 2; i < t.size(); ++i) {
+    if (differs(t[i] - t[i - 1])) return false;
+  }
+  return !clip.settings.closed || !differs(clip.duration_s() - t.back() + t.front());
+}
+
 /// How far, in sizes of its keys' box, a blend may leave it: the sum of its negative weights, at most. Evenly spaced
 /// Catmull-Rom is doubled for uneven keys; an easing lies within the hull of its control points.
-float overshoot(animation::Interpolation mode, const std::optional<animation::CubicBezier>& easing) noexcept {
+float overshoot(animation::Interpolation mode, const std::optional<animation::CubicBezier>& easing, bool even) noexcept {
   if (mode == animation::Interpolation::Step) return 0.0F;
   const double lo = easing ? std::min({0.0, easing->y1, easing->y2}) : 0.0;
   const double hi = easing ? std::max({1.0, easing->y1, easing->y2}) : 1.0;
@@ -26,16 +38,17 @@ float overshoot(animation::Interpolation mode, const std::optional<animation::Cu
     for (const double w : weights) negative += std::max(0.0, -w);
     most = std::max(most, negative);
   }
-  return static_cast<float>(2.0 * most);
+  return static_cast<float>((even ? 1.01 : 2.0) * most);
 }
 
 Bounds clip_bounds(const Actor& actor, const Clip& clip) noexcept {
   if (clip.keyframes.empty()) return actor.rest->bounds();
   Bounds own = clip.keyframes.front().vertices->bounds();
   float beyond = 0.0F;
+  const bool even = evenly_spaced(clip);
   for (std::size_t i = 0; i < clip.keyframes.size(); ++i) {
     own = joined(own, clip.keyframes[i].vertices->bounds());
-    beyond = std::max(beyond, overshoot(effective_interpolation(actor, clip, i), clip.keyframes[i].easing));
+    beyond = std::max(beyond, overshoot(effective_interpolation(actor, clip, i), clip.keyframes[i].easing, even));
   }
   const glm::vec3 margin = beyond * (own.max - own.min);
   return {own.min - margin, own.max + margin};
@@ -75,15 +88,14 @@ ActorPtr Scene::find_actor(std::string_view actor) const noexcept {
   return at == actors.end() ? nullptr : *at;
 }
 
-std::optional<Sphere> bounding_sphere(const Scene& scene) noexcept {
+std::optional<Bounds> visible_bounds(const Scene& scene) noexcept {
   std::optional<Bounds> all;
   for (const ActorPtr& actor : scene.actors) {
     if (!actor->settings.visible) continue;
     const Bounds own = world_bounds(*actor);
     all = all ? joined(*all, own) : own;
   }
-  if (!all) return std::nullopt;
-  return Sphere{(all->min + all->max) * 0.5F, glm::length(all->max - all->min) * 0.5F};
+  return all;
 }
 
 }  // namespace tweend::model

@@ -45,8 +45,8 @@ struct Scene {
 
 using ScenePtr = std::shared_ptr<const Scene>;
 
-/// A ball around everything that the visible actors show in all their clips, spin and overshoot included;
+/// A world-space box around everything that the visible actors show in all their clips, spin and overshoot included;
 /// empty where nothing is visible.
-[[nodiscard]] std::optional<Sphere> bounding_sphere(const Scene& scene) noexcept;
+[[nodiscard]] std::optional<Bounds> visible_bounds(const Scene& scene) noexcept;
 
 }  // namespace tweend::model

@@ -1,23 +1,16 @@
 #pragma once
 
-#include <glm/vec3.hpp>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "server/animation/vertex_attributes.hpp"
 #include "server/base/result.hpp"
+#include "server/model/bounds.hpp"
 #include "server/model/content_hash.hpp"
 #include "server/model/mesh.hpp"
 
 namespace tweend::model {
-
-/// An axis-aligned box in model space, metres.
-struct Bounds {
-  glm::vec3 min{0.0F};
-  glm::vec3 max{0.0F};
-  bool operator==(const Bounds&) const = default;
-};
 
 /// The whole mesh at one instant (seed: "snapshots of a mesh with different poses"), in model space:
 /// one block of positions, then unit normals, then, where the mesh has texture coordinates, unit tangents,
@@ -41,6 +34,7 @@ class VertexKey {
   /// All of it in one piece: positions, normals, tangents if there are any.
   [[nodiscard]] std::span<const float> block() const noexcept { return block_; }
   [[nodiscard]] animation::VertexAttributes attributes() const noexcept;
+  /// In model space.
   [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
   [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
 

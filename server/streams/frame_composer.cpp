@@ -44,7 +44,7 @@ model::Camera camera_of(const model::Scene& scene, const std::optional<model::Ca
   const model::Camera& of_scene = scene.settings.camera;
   if (!own) return of_scene;
   const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  const auto visible = own->fit ? model::bounding_sphere(scene) : std::nullopt;
+  const auto visible = own->fit ? model::visible_bounds(scene) : std::nullopt;
   const auto placed = model::place(of_scene, *own, visible, aspect);
   return placed ? *placed : of_scene;
 }

@@ -14,8 +14,7 @@ constexpr ClockUs kPatienceUs = 100'000;
 
 class StillJob final : public render::FrameJob, public std::enable_shared_from_this<StillJob> {
  public:
-  StillJob(StillRequest request, WorkerPool& workers, StillDone done)
-      : request_(std::move(request)), workers_(workers), done_(std::move(done)) {}
+  StillJob(StillRequest request, DrawnStillDone done) : request_(std::move(request)), done_(std::move(done)) {}
 
   void compose(render::RenderThread& renderer) {
     if (request_.time_s) {
@@ -31,34 +30,44 @@ class StillJob final : public render::FrameJob, public std::enable_shared_from_t
 
   void drawn(Result<render::PixelsPtr> pixels) noexcept override {
     if (!pixels) return done_(pixels.error());
-    workers_.post([self = shared_from_this(), pixels = std::move(*pixels)] { self->done_(self->encode(pixels->view())); });
+    done_(DrawnStill{show_.actors.empty() ? 0.0 : show_.actors.front().time_s, std::move(*pixels)});
   }
 
  private:
-  [[nodiscard]] Result<Still> encode(const render::ImageView& image) const {
-    Still still{show_.actors.empty() ? 0.0 : show_.actors.front().time_s, {}};
-    if (request_.format == ImageFormat::Png) {
-      TWEEND_ASSIGN(still.file, render::encode_png(image));
-      return still;
-    }
-    still.file.resize(render::JpegEncoder::most_bytes(image.size));
-    TWEEND_ASSIGN(const std::size_t bytes, render::JpegEncoder().encode(image, request_.quality, still.file));
-    still.file.resize(bytes);
-    return still;
-  }
-
   const StillRequest request_;
-  WorkerPool& workers_;
-  const StillDone done_;
+  const DrawnStillDone done_;
   stage::Show show_;
   render::Picture picture_;
 };
 
+Result<Still> encode(const DrawnStill& drawn, ImageFormat format, int quality) {
+  const render::ImageView image = drawn.pixels->view();
+  Still still{drawn.time_s, {}};
+  if (format == ImageFormat::Png) {
+    TWEEND_ASSIGN(still.file, render::encode_png(image));
+    return still;
+  }
+  still.file.resize(render::JpegEncoder::most_bytes(image.size));
+  TWEEND_ASSIGN(const std::size_t bytes, render::JpegEncoder().encode(image, quality, still.file));
+  still.file.resize(bytes);
+  return still;
+}
+
 }  // namespace
 
-void render_still(StillRequest request, WorkerPool& workers, render::RenderThread& renderer, StillDone done) {
-  const auto job = std::make_shared<StillJob>(std::move(request), workers, std::move(done));
+void draw_still(StillRequest request, WorkerPool& workers, render::RenderThread& renderer, DrawnStillDone done) {
+  const auto job = std::make_shared<StillJob>(std::move(request), std::move(done));
   workers.post([job, &renderer] { job->compose(renderer); });
+}
+
+void render_still(StillRequest request, WorkerPool& workers, render::RenderThread& renderer, StillDone done) {
+  const ImageFormat format = request.format;
+  const int quality = request.quality;
+  draw_still(std::move(request), workers, renderer,
+             [&workers, format, quality, done = std::move(done)](Result<DrawnStill> drawn) {
+               if (!drawn) return done(drawn.error());
+               workers.post([drawn = std::move(*drawn), format, quality, done] { done(encode(drawn, format, quality)); });
+             });
 }
 
 }  // namespace tweend::streams

@@ -30,12 +30,20 @@ struct Still {
   double time_s = 0.0;  ///< media time of the scene's first actor
   std::vector<std::byte> file;
 };
+struct DrawnStill {
+  double time_s = 0.0;
+  render::PixelsPtr pixels;
+};
 
 /// On a worker or the render thread.
 using StillDone = std::function<void(Result<Still>)>;
+/// On the render thread, which has others to serve.
+using DrawnStillDone = std::function<void(Result<DrawnStill>)>;
 
 /// Draws and encodes a picture; streams go first. Any thread; returns at once.
 /// What can go wrong: Limit (too large for the device), Unavailable (no device, no memory).
 void render_still(StillRequest request, WorkerPool& workers, render::RenderThread& renderer, StillDone done);
+/// Only draws it.
+void draw_still(StillRequest request, WorkerPool& workers, render::RenderThread& renderer, DrawnStillDone done);
 
 }  // namespace tweend::streams

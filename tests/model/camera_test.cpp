@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "server/model/scene.hpp"
 
@@ -44,20 +45,20 @@ TEST(Camera, OrbitPlacesTheEyeByItsAngles) {
   EXPECT_NEAR(above.eye.y, 3, 1e-5);
 }
 
-TEST(Camera, FitBringsTheWholeBallIntoViewAndKeepsTheDirection) {
+TEST(Camera, FitBringsTheWholeBoxIntoViewAndKeepsTheDirection) {
   for (const float radius : {0.01F, 1.0F, 5000.0F}) {
     Camera c;
     c.eye = {3, 4, 5};
     c.target = {0, 1, 0};
-    const Sphere ball{{10, -3, 2}, radius};
-    const Camera fitted = fit(c, ball);
+    const glm::vec3 center{10, -3, 2};
+    const Camera fitted = fit(c, Bounds{center - radius, center + radius});
     const Vec before = unit(minus(of(c.target), of(c.eye))), after = unit(minus(of(fitted.target), of(fitted.eye)));
     EXPECT_NEAR(dot(before, after), 1.0, 1e-6);
     for (int a = 0; a < 24; ++a) {
       for (int e = -6; e <= 6; ++e) {
         const double az = a * 0.2618, el = e * 0.2618;
-        const Vec point{ball.center.x + radius * std::cos(el) * std::sin(az), ball.center.y + radius * std::sin(el),
-                        ball.center.z + radius * std::cos(el) * std::cos(az)};
+        const Vec point{center.x + radius * std::cos(el) * std::sin(az), center.y + radius * std::sin(el),
+                        center.z + radius * std::cos(el) * std::cos(az)};
         EXPECT_TRUE(sees(fitted, point, 1.0)) << radius << " " << a << " " << e;
         EXPECT_TRUE(sees(fitted, point, 16.0 / 9.0));
       }
@@ -65,8 +66,22 @@ TEST(Camera, FitBringsTheWholeBallIntoViewAndKeepsTheDirection) {
   }
 }
 
+// A row of actors fills a wide picture, and a tall one shows all of it too.
+TEST(Camera, FitFollowsThePicturesShape) {
+  const Bounds row{{-10, 0, -1}, {10, 2, 1}};
+  const Camera wide = fit(Camera{}, row, 4.0F), square = fit(Camera{}, row), tall = fit(Camera{}, row, 0.25F);
+  const auto distance = [](const Camera& c) {
+    return std::sqrt(dot(minus(of(c.eye), of(c.target)), minus(of(c.eye), of(c.target))));
+  };
+  EXPECT_LT(distance(wide), 0.5 * distance(square));
+  EXPECT_GT(distance(tall), 2.0 * distance(square));
+  for (const auto& [camera, aspect] : {std::pair{wide, 4.0}, std::pair{square, 1.0}, std::pair{tall, 0.25}}) {
+    for (const double x : {-10.0, 10.0}) EXPECT_TRUE(sees(camera, {x, 2.0, 1.0}, aspect)) << aspect;
+  }
+}
+
 TEST(Camera, FitOfAPointIsStillACamera) {
-  const Camera fitted = fit(Camera{}, Sphere{{1, 1, 1}, 0});
+  const Camera fitted = fit(Camera{}, Bounds{{1, 1, 1}, {1, 1, 1}});
   EXPECT_GT(fitted.near, 0);
   EXPECT_GT(fitted.far, fitted.near);
   EXPECT_NE(fitted.eye, fitted.target);
@@ -81,32 +96,34 @@ ActorPtr actor(std::vector<float> positions, ActorSettings settings = {}) {
   return std::make_shared<const Actor>(Actor{"a", "mesh", mesh, key, settings, {std::make_shared<const Clip>(clip)}});
 }
 
-bool holds(const Sphere& ball, Vec p) {
-  const Vec d = minus(p, of(ball.center));
-  return std::sqrt(dot(d, d)) <= ball.radius * 1.00001;
+bool holds(const Bounds& box, Vec p) {
+  constexpr double kRounding = 1e-4;
+  const Vec min = of(box.min), max = of(box.max);
+  return p.x >= min.x - kRounding && p.x <= max.x + kRounding && p.y >= min.y - kRounding && p.y <= max.y + kRounding &&
+         p.z >= min.z - kRounding && p.z <= max.z + kRounding;
 }
 
-TEST(BoundingSphere, IgnoresWhatIsInvisible) {
+TEST(VisibleBounds, IgnoresWhatIsInvisible) {
   Scene scene;
-  EXPECT_FALSE(bounding_sphere(scene));
+  EXPECT_FALSE(visible_bounds(scene));
   ActorSettings hidden;
   hidden.visible = false;
   scene.actors = {actor({0, 0, 0, 100, 0, 0, 0, 100, 0}, hidden)};
-  EXPECT_FALSE(bounding_sphere(scene));
+  EXPECT_FALSE(visible_bounds(scene));
 }
 
-TEST(BoundingSphere, HoldsTransformedActorsAndWhatTheySweepWhileSpinning) {
+TEST(VisibleBounds, HoldsTransformedActorsAndWhatTheySweepWhileSpinning) {
   ActorSettings placed;
   placed.transform.translation = {0, 50, 0};
   ActorSettings spinning;
   spinning.spin_rad_s = 1;
   Scene scene;
   scene.actors = {actor({0, 0, 0, 1, 0, 0, 0, 1, 0}, placed), actor({7, 0, 0, 8, 0, 0, 7, 1, 0}, spinning)};
-  const auto ball = bounding_sphere(scene);
-  ASSERT_TRUE(ball);
-  EXPECT_TRUE(holds(*ball, {1, 50, 0}));
-  EXPECT_TRUE(holds(*ball, {0, 51, 0}));
-  for (int i = 0; i < 16; ++i) EXPECT_TRUE(holds(*ball, {8 * std::sin(i * 0.3927), 0, 8 * std::cos(i * 0.3927)})) << i;
+  const auto box = visible_bounds(scene);
+  ASSERT_TRUE(box);
+  EXPECT_TRUE(holds(*box, {1, 50, 0}));
+  EXPECT_TRUE(holds(*box, {0, 51, 0}));
+  for (int i = 0; i < 16; ++i) EXPECT_TRUE(holds(*box, {8 * std::sin(i * 0.3927), 0, 8 * std::cos(i * 0.3927)})) << i;
 }
 
 }  // namespace

@@ -56,8 +56,8 @@ Point placed(const Transform& t, double spin, Point p) {
           p.z + 2 * (qx * u.y - qy * u.x) + static_cast<double>(t.translation.z)};
 }
 
-/// How far outside the ball the farthest vertex gets, over all actors, clips, times and turns; at most 0 where all are inside.
-double farthest_outside(const Scene& scene, const Sphere& ball) {
+/// How far outside the box the farthest vertex gets, over all actors, clips, times and turns; at most 0 where all are inside.
+double farthest_outside(const Scene& scene, const Bounds& box) {
   double worst = -1e300;
   for (const ActorPtr& a : scene.actors) {
     for (const ClipPtr& clip : a->clips) {
@@ -69,10 +69,12 @@ double farthest_outside(const Scene& scene, const Sphere& ball) {
             const Point p = placed(a->settings.transform, turn * std::numbers::pi / 16.0,
                                    {static_cast<double>(positions[i]), static_cast<double>(positions[i + 1]),
                                     static_cast<double>(positions[i + 2])});
-            const double distance =
-                std::hypot(p.x - static_cast<double>(ball.center.x), p.y - static_cast<double>(ball.center.y),
-                           p.z - static_cast<double>(ball.center.z));
-            worst = std::max(worst, distance - static_cast<double>(ball.radius) * (1.0 + 1e-5));
+            const double at[] = {p.x, p.y, p.z};
+            for (int axis = 0; axis < 3; ++axis) {
+              const auto low = static_cast<double>(box.min[axis]), high = static_cast<double>(box.max[axis]);
+              const double rounding = 1e-5 * std::max({1.0, std::abs(low), std::abs(high)});
+              worst = std::max({worst, low - at[axis] - rounding, at[axis] - high - rounding});
+            }
           }
         }
       }
@@ -82,9 +84,9 @@ double farthest_outside(const Scene& scene, const Sphere& ball) {
 }
 
 void expect_held(const Scene& scene) {
-  const auto ball = bounding_sphere(scene);
-  ASSERT_TRUE(ball);
-  EXPECT_LE(farthest_outside(scene, *ball), 0.0) << "radius " << ball->radius;
+  const auto box = visible_bounds(scene);
+  ASSERT_TRUE(box);
+  EXPECT_LE(farthest_outside(scene, *box), 0.0);
 }
 
 TEST(Scene, FindsActorsByName) {
@@ -94,25 +96,23 @@ TEST(Scene, FindsActorsByName) {
   EXPECT_EQ(scene.find_actor(""), nullptr);
 }
 
-TEST(BoundingSphere, IsNoLargerThanTheBoxThatItHolds) {
-  const auto ball = bounding_sphere(scene_of({actor_of(key({-1, -2, -3, 1, 2, 3, 0, 0, 0}), {clip_of("c", {}, {})})}));
-  ASSERT_TRUE(ball);
-  EXPECT_EQ(ball->center, glm::vec3(0.0F));
-  EXPECT_NEAR(static_cast<double>(ball->radius), std::sqrt(14.0), 1e-6);
+TEST(VisibleBounds, IsNoLargerThanWhatItHolds) {
+  const auto box = visible_bounds(scene_of({actor_of(key({-1, -2, -3, 1, 2, 3, 0, 0, 0}), {clip_of("c", {}, {})})}));
+  EXPECT_EQ(box, (Bounds{{-1, -2, -3}, {1, 2, 3}}));
 }
 
-TEST(BoundingSphere, HoldsEveryKeyframeOfEveryClip) {
+TEST(VisibleBounds, HoldsEveryKeyframeOfEveryClip) {
   expect_held(scene_of({actor_of(key_at(0, 0, 0), {clip_of("near", {0, 1}, {key_at(0, 0, 0), key_at(1, 0, 0)}),
                                                    clip_of("far", {0, 1}, {key_at(0, 50, 0), key_at(0, 0, -70)})})}));
 }
 
-TEST(BoundingSphere, HoldsTheRestShapeWhereAClipIsEmpty) {
+TEST(VisibleBounds, HoldsTheRestShapeWhereAClipIsEmpty) {
   // The empty clip shows the rest shape, wherever the other clips' keyframes are.
   expect_held(scene_of({actor_of(key_at(100, 0, 0),
                                  {clip_of("default", {}, {}), clip_of("walk", {0, 1}, {key_at(0, 0, 0), key_at(1, 0, 0)})})}));
 }
 
-TEST(BoundingSphere, HoldsWhatCatmullRomOvershoots) {
+TEST(VisibleBounds, HoldsWhatCatmullRomOvershoots) {
   const std::vector<VertexKeyPtr> zigzag{key_at(0, 0, 0), key_at(1, 0, 0), key_at(1, 0, 0), key_at(0, 0, 0)};
   expect_held(scene_of({actor_of(zigzag[0], {clip_of("even", {0, 1, 2, 3}, zigzag, Interpolation::CatmullRom)})}));
   // A long way between two short ones swings out farthest.
@@ -131,7 +131,7 @@ TEST(BoundingSphere, HoldsWhatCatmullRomOvershoots) {
   }
 }
 
-TEST(BoundingSphere, HoldsWhatAnEasingOvershoots) {
+TEST(VisibleBounds, HoldsWhatAnEasingOvershoots) {
   // y rises to about 2.4 on its way from 0 to 1: the actor goes far beyond its second keyframe and comes back.
   const std::vector<VertexKeyPtr> keys{key_at(0, 0, 0), key_at(10, 0, 0)};
   for (const auto mode : {Interpolation::Linear, Interpolation::CatmullRom}) {
@@ -141,7 +141,7 @@ TEST(BoundingSphere, HoldsWhatAnEasingOvershoots) {
   }
 }
 
-TEST(BoundingSphere, HoldsWhatSpinsWhateverItsTransform) {
+TEST(VisibleBounds, HoldsWhatSpinsWhateverItsTransform) {
   std::mt19937 random(10);
   std::uniform_real_distribution<float> place(-5.0F, 5.0F), factor(0.1F, 8.0F);
   for (int round = 0; round < 50; ++round) {
@@ -155,7 +155,7 @@ TEST(BoundingSphere, HoldsWhatSpinsWhateverItsTransform) {
   }
 }
 
-TEST(BoundingSphere, HoldsALongSpinningActorBesideAnother) {
+TEST(VisibleBounds, HoldsALongSpinningActorBesideAnother) {
   // A rod of 200 m along X by its scale: spinning, it points along Z as well.
   ActorSettings rod;
   rod.spin_rad_s = 1.0;
@@ -168,17 +168,16 @@ TEST(BoundingSphere, HoldsALongSpinningActorBesideAnother) {
       scene_of({actor_of(shape, {clip_of("c", {0}, {shape})}, rod), actor_of(small, {clip_of("c", {0}, {small})}, beside)}));
 }
 
-TEST(BoundingSphere, LeavesOutWhatIsInvisibleBesideWhatIsNot) {
+TEST(VisibleBounds, LeavesOutWhatIsInvisibleBesideWhatIsNot) {
   ActorSettings hidden;
   hidden.visible = false;
   hidden.transform.translation = {1000.0F, 0.0F, 0.0F};
   const VertexKeyPtr shape = key_at(0, 0, 0, 1.0F);
-  const auto alone = bounding_sphere(scene_of({actor_of(shape, {clip_of("c", {0}, {shape})})}));
-  const auto both = bounding_sphere(
+  const auto alone = visible_bounds(scene_of({actor_of(shape, {clip_of("c", {0}, {shape})})}));
+  const auto both = visible_bounds(
       scene_of({actor_of(shape, {clip_of("c", {0}, {shape})}, hidden), actor_of(shape, {clip_of("c", {0}, {shape})})}));
   ASSERT_TRUE(alone && both);
-  EXPECT_EQ(alone->center, both->center);
-  EXPECT_EQ(alone->radius, both->radius);
+  EXPECT_EQ(*alone, *both);
 }
 
 TEST(Fit, ShowsAllEightCornersOfABoxFromAnySide) {
@@ -192,9 +191,9 @@ TEST(Fit, ShowsAllEightCornersOfABoxFromAnySide) {
     camera.eye = {place(random), place(random), place(random)};
     camera.target = {place(random), place(random), place(random)};
     camera.fov_y = angle(random);
-    const auto ball = bounding_sphere(scene_of({actor_of(box, {clip_of("c", {0}, {box})})}));
-    ASSERT_TRUE(ball);
-    const Camera fitted = fit(camera, *ball);
+    const auto bounds = visible_bounds(scene_of({actor_of(box, {clip_of("c", {0}, {box})})}));
+    ASSERT_TRUE(bounds);
+    const Camera fitted = fit(camera, *bounds);
 
     const auto unit = [](Point p) {
       const double length = std::hypot(p.x, p.y, p.z);

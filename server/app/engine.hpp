@@ -1,0 +1,48 @@
+#pragma once
+
+#include <algorithm>
+#include <thread>
+#include <vector>
+
+#include "server/assets/asset_library.hpp"
+#include "server/commands/event_hub.hpp"
+#include "server/commands/services.hpp"
+#include "server/store/memory_store.hpp"
+
+namespace tweend::app {
+
+/// Opens the assets folders. @return NotFound naming the one that can't be
+[[nodiscard]] Result<std::vector<assets::AssetRoot>> open_roots(const std::vector<std::string>& folders);
+
+/// Everything that runs but the network, from the bottom up; taken down the other way round.
+class Engine {
+ public:
+  /// @param deliver  posts to the thread on which packets and events are handed over
+  Engine(const Limits& limits, std::vector<assets::AssetRoot> roots, const render::RenderOptions& render, Metrics& metrics,
+         const Post& deliver);
+  ~Engine();  ///< stop()
+  Engine(const Engine&) = delete;
+  Engine& operator=(const Engine&) = delete;
+
+  [[nodiscard]] Status start();
+  /// Commits what was accepted, stops every thread. Nobody may ask for anything any more.
+  void stop();
+
+  [[nodiscard]] const commands::Services& services() const noexcept { return services_; }
+  [[nodiscard]] const render::RenderThread& renderer() const noexcept { return renderer_; }
+
+ private:
+  const Limits limits_;
+  bool running_ = false;
+  Metrics& metrics_;
+  assets::AssetLibrary library_;
+  store::MemoryStore store_;
+  WorkerPool workers_{std::max(2U, std::thread::hardware_concurrency())};
+  render::RenderThread renderer_;
+  stage::Stage stage_;
+  streams::Hub hub_;
+  commands::EventHub events_;
+  commands::Services services_;
+};
+
+}  // namespace tweend::app
