@@ -37,7 +37,7 @@ MeshSourcePtr Shape::source() const {
 
 KeySource Shape::key(std::size_t index) const { return {{name, index + 1}, blocks[index]}; }
 
-DrawItem Shape::item(const std::vector<std::size_t>& keys, const std::vector<float>& weights) const {
+DrawItem Shape::item(const std::vector<std::size_t>& keys, const std::vector<float>& weights) const& {
   DrawItem item;
   item.mesh = source();
   item.key_count = static_cast<std::uint32_t>(keys.size());

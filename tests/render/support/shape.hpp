@@ -29,8 +29,9 @@ struct Shape {
 
   [[nodiscard]] MeshSourcePtr source() const;
   [[nodiscard]] KeySource key(std::size_t index) const;
-  /// The shape between these of its keyframes.
-  [[nodiscard]] DrawItem item(const std::vector<std::size_t>& keys = {0}, const std::vector<float>& weights = {1.0F}) const;
+  /// The shape between these of its keyframes, which stay the shape's.
+  [[nodiscard]] DrawItem item(const std::vector<std::size_t>& keys = {0}, const std::vector<float>& weights = {1.0F}) const&;
+  DrawItem item(const std::vector<std::size_t>& keys = {0}, const std::vector<float>& weights = {1.0F}) && = delete;
 };
 
 /// A square in the plane z = `z`, seen from +Z, from -half to half, with texture coordinates from 0 to 1.
