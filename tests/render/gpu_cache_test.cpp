@@ -98,6 +98,17 @@ TEST_F(GpuCacheOnGpu, ATextureGoesWithTheLastMeshThatShowsIt) {
   EXPECT_TRUE(texture.expired());
 }
 
+TEST_F(GpuCacheOnGpu, UploadsAnewWhatItHasForgotten) {
+  GpuCache cache(std::size_t{1} << 20U);
+  const Shape shape = textured_square({5, 5});
+  std::weak_ptr<const GlTexture> texture = show(cache, shape).ranges()[0].texture;
+  cache.forget();
+  EXPECT_EQ(cache.mesh_count(), 0U);
+  EXPECT_TRUE(texture.expired());
+  static_cast<void>(show(cache, shape));
+  EXPECT_EQ(cache.key_uploads(), 1U);
+}
+
 TEST_F(GpuCacheOnGpu, WhatWasLetGoIsDrawnTheSameAfterwards) {
   test::Offscreen small(1);
   Picture picture;
