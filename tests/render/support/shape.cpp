@@ -1,5 +1,6 @@
 #include "tests/render/support/shape.hpp"
 
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/gtc/constants.hpp>
@@ -8,7 +9,7 @@
 namespace tweend::render::test {
 
 void Shape::rename() {
-  static std::uint64_t names = 0;
+  static std::atomic<std::uint64_t> names{0};
   name = ++names;
 }
 
