@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -45,6 +45,7 @@ WaitingJobPtr submit(RenderThread& thread, Picture picture, std::int64_t deadlin
 class Held {
  public:
   explicit Held(RenderThread& thread) {
+    if (!thread.device()) throw std::runtime_error(thread.device().error().message);  // nobody would ask for the picture
     job_ = std::make_shared<WaitingJob>(plain(), [this] {
       asked_.set_value();
       released_.get_future().wait();

@@ -1,6 +1,7 @@
 #include "tests/render/support/offscreen.hpp"
 
 #include <array>
+#include <stdexcept>
 #include <string>
 
 namespace tweend::render::test {
@@ -23,10 +24,10 @@ void main() {
 
 Offscreen::Offscreen(std::size_t gpu_bytes) {
   auto context = EglContext::open();
-  EXPECT_TRUE(context) << context.error().message;
+  if (!context) throw std::runtime_error(context.error().message);
   context_ = std::move(*context);
   auto renderer = Renderer::make(gpu_bytes);
-  EXPECT_TRUE(renderer) << renderer.error().message;
+  if (!renderer) throw std::runtime_error(renderer.error().message);
   renderer_ = std::move(*renderer);
 }
 

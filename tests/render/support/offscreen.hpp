@@ -15,6 +15,7 @@ namespace tweend::render::test {
 /// A context and a renderer on the test's own thread: draw, and look at the pixels.
 class Offscreen {
  public:
+  /// Throws, and so fails the test, where nothing draws.
   explicit Offscreen(std::size_t gpu_bytes = std::size_t{64} << 20U);
 
   [[nodiscard]] Renderer& renderer() { return *renderer_; }
