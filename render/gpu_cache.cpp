@@ -51,7 +51,7 @@ GpuMesh& GpuCache::mesh(const MeshSource& source) {
 
 std::shared_ptr<const GlTexture> GpuCache::texture(const TextureSource& source) {
   std::weak_ptr<const GlTexture>& held = textures_[source.id];
-  if (const auto texture = held.lock()) return texture;
+  if (auto texture = held.lock()) return texture;
   std::erase_if(textures_, [&](const auto& t) { return t.second.expired() && t.first != source.id; });
   auto texture = upload(source);
   held = texture;

@@ -21,6 +21,8 @@ class GpuCache {
   void begin_picture();
   /// The mesh, uploaded the first time. Good until the next begin_picture().
   [[nodiscard]] GpuMesh& mesh(const MeshSource& source);
+  /// Lets everything go; what is asked for next is uploaded anew.
+  void forget() noexcept { meshes_.clear(); }
 
   /// How many keyframes have been written to the GPU so far, by meshes that are there.
   [[nodiscard]] std::uint64_t key_uploads() const noexcept;

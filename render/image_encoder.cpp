@@ -5,6 +5,7 @@
 #include <turbojpeg.h>
 
 #include <cstdlib>
+#include <string_view>
 #include <utility>
 
 namespace tweend::render {
@@ -26,16 +27,24 @@ std::size_t JpegEncoder::most_bytes(Size size) noexcept {
 }
 
 Result<std::size_t> JpegEncoder::encode(const ImageView& image, int quality, std::span<std::byte> out) {
+  const auto failed = [&](std::string_view reason) {
+    return fail(ErrorCode::Internal,
+                fmt::format("expected a JPEG of {} x {} pixels, found: {}", image.size.width, image.size.height, reason));
+  };
+  if (image.size.width == 0 || image.size.height == 0) return failed("no pixels");
+  // libjpeg-turbo 2 does not look at how much room it is given: it takes for granted what tjBufSize says.
+  if (out.size() < most_bytes(image.size)) {
+    return failed(fmt::format("room for {} bytes where it may take {}", out.size(), most_bytes(image.size)));
+  }
   auto* begin = reinterpret_cast<unsigned char*>(out.data());
   auto bytes = static_cast<unsigned long>(out.size());
   const auto* pixels = reinterpret_cast<const unsigned char*>(image.bytes.data());
   // Bottom-up rows are read as they lie: nothing is flipped.
-  const int failed = tjCompress2(impl_->handle, pixels, static_cast<int>(image.size.width), static_cast<int>(image.row_bytes()),
-                                 static_cast<int>(image.size.height), TJPF_RGBX, &begin, &bytes, TJSAMP_420, quality,
-                                 TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC);
-  if (failed == 0) return static_cast<std::size_t>(bytes);
-  return fail(ErrorCode::Internal, fmt::format("expected a JPEG of {} x {} pixels, found: {}", image.size.width,
-                                               image.size.height, tjGetErrorStr2(impl_->handle)));
+  const int error = tjCompress2(impl_->handle, pixels, static_cast<int>(image.size.width), static_cast<int>(image.row_bytes()),
+                                static_cast<int>(image.size.height), TJPF_RGBX, &begin, &bytes, TJSAMP_420, quality,
+                                TJFLAG_BOTTOMUP | TJFLAG_NOREALLOC);
+  if (error == 0) return static_cast<std::size_t>(bytes);
+  return failed(tjGetErrorStr2(impl_->handle));
 }
 
 namespace {

@@ -23,7 +23,8 @@ class JpegEncoder {
 
   /// @param quality  1 to 100
   /// @param out      room for most_bytes(image.size)
-  /// @return how many bytes of `out` were written; Internal with the library's reason
+  /// @return how many bytes of `out` were written; Internal if there is less room, or with the library's reason; nothing is
+  /// written past `out`
   [[nodiscard]] Result<std::size_t> encode(const ImageView& image, int quality, std::span<std::byte> out);
 
  private:

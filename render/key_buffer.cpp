@@ -12,17 +12,17 @@ std::array<GLintptr, 4> KeyBuffer::place(std::span<const KeySource> keys, std::s
   ++pictures_;
   const std::size_t wanted = std::min(std::max(expected, keys.size()), most_slots_);
   if (slots_.size() < wanted) grow(wanted);
+  // Those that are there come first: a slot that this picture binds is not given to another of its keys.
+  for (const KeySource& key : keys) {
+    if (const auto at = slot_of_.find(key.id); at != slot_of_.end()) slots_[at->second].used = pictures_;
+  }
   std::array<GLintptr, 4> offsets{};
   for (std::size_t i = 0; i < keys.size(); ++i) offsets[i] = static_cast<GLintptr>(find_or_write(keys[i]) * slot_bytes_);
   return offsets;
 }
 
 std::uint32_t KeyBuffer::find_or_write(const KeySource& key) {
-  const auto at = slot_of_.find(key.id);
-  if (at != slot_of_.end()) {
-    slots_[at->second].used = pictures_;
-    return at->second;
-  }
+  if (const auto at = slot_of_.find(key.id); at != slot_of_.end()) return at->second;
   const std::uint32_t slot = free_slot();
   if (slots_[slot].used != 0) slot_of_.erase(slots_[slot].id);
   slots_[slot] = {key.id, pictures_};

@@ -20,14 +20,14 @@ namespace tweend::render {
 struct ResourceId {
   std::uint64_t high = 0;
   std::uint64_t low = 0;
-  auto operator<=>(const ResourceId&) const = default;
+  auto operator<=>(const ResourceId&) const = default;  // NOLINT(modernize-use-nullptr): clang-tidy 14 misreads it
 };
 
 /// Pixels of a picture.
 struct Size {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  auto operator<=>(const Size&) const = default;
+  bool operator==(const Size&) const = default;
 };
 
 /// 8 bits a channel, RGBA, sRGB, top row first, rows without gaps.

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/gl_error.hpp"
+
 namespace tweend::render {
 namespace {
 
@@ -38,7 +40,10 @@ PixelsPtr ReadbackPool::take(Size size) {
     const auto size_bytes = static_cast<GLsizeiptr>(bytes);
     glNamedBufferStorage(pixels->buffer(), size_bytes, nullptr, kMapping | GL_CLIENT_STORAGE_BIT);
     pixels->bytes_ = static_cast<const std::byte*>(glMapNamedBufferRange(pixels->buffer(), 0, size_bytes, kMapping));
-    if (pixels->bytes_ == nullptr) return nullptr;
+    if (pixels->bytes_ == nullptr) {
+      static_cast<void>(take_gl_error());  // said by returning nothing
+      return nullptr;
+    }
     pixels->capacity_ = bytes;
   }
   pixels->size_ = size;

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/gl_error.hpp"
+
 namespace tweend::render {
 namespace {
 
@@ -21,6 +23,7 @@ Result<RenderTargetPtr> RenderTarget::make(Size size, int samples) {
                 fmt::format("expected a picture of 1 x 1 to {0} x {0} pixels, the most this device draws, found {1} x {2}",
                             most, size.width, size.height));
   }
+  static_cast<void>(take_gl_error());  // not ours
   std::unique_ptr<RenderTarget> target(new RenderTarget);
   target->size_ = size;
   target->samples_ = samples;
@@ -29,7 +32,7 @@ Result<RenderTargetPtr> RenderTarget::make(Size size, int samples) {
     target->resolved_ = std::make_unique<Attachments>();
     complete = target->attach(*target->resolved_, 1, false) && complete;
   }
-  if (complete && glGetError() == GL_NO_ERROR) return target;
+  if (take_gl_error() == GL_NO_ERROR && complete) return target;
   return fail(ErrorCode::Unavailable,
               fmt::format("expected memory for a picture of {} x {} pixels, {} samples each, found none; "
                           "ask for a smaller one",

@@ -7,6 +7,7 @@
 #include <deque>
 #include <utility>
 
+#include "render/gl_error.hpp"
 #include "render/render_target.hpp"
 #include "render/renderer.hpp"
 
@@ -51,6 +52,13 @@ class RenderThread::Loop {
       return job->drawn(no_memory(picture.size));
     }
     renderer_->draw(picture, **target);
+    if (take_gl_error() == GL_OUT_OF_MEMORY) {
+      // Some mesh has no memory behind it now; it must not be taken for uploaded.
+      renderer_->cache().forget();
+      targets_.give_back(std::move(*target));
+      pixels.reset();
+      return job->drawn(no_memory(picture.size));
+    }
     in_flight_.push_back({std::move(job), std::move(*target), std::move(pixels), fence(), false});
   }
 
@@ -72,7 +80,7 @@ class RenderThread::Loop {
     in_flight_.pop_front();
     const Size size = done.target->size();
     targets_.give_back(std::move(done.target));
-    if (glGetError() == GL_OUT_OF_MEMORY) {
+    if (take_gl_error() == GL_OUT_OF_MEMORY) {
       done.job->drawn(no_memory(size));
     } else {
       done.job->drawn(std::move(done.pixels));

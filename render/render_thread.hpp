@@ -18,6 +18,7 @@
 namespace tweend::render {
 
 /// Somebody who wants a picture. Both functions are called on the render thread, which has others to serve: they hand on.
+/// Only once it is stopping `drawn` is called by submit() itself, with an error.
 class FrameJob {
  public:
   virtual ~FrameJob() = default;
@@ -53,7 +54,8 @@ class RenderThread {
   /// Any thread. The job is kept until it has been answered; it must not be submitted again before.
   /// @param deadline_us  a reading of any clock, the same for all jobs: the earliest is drawn first
   void submit(std::shared_ptr<FrameJob> job, std::int64_t deadline_us);
-  /// Draws what waits, answers it, joins. Every picture must come back: who holds one is waited for.
+  /// Draws what waits, answers it, joins. Every picture must come back: who holds one is waited for. One thread only, and
+  /// not the render thread.
   void stop();
 
  private:
