@@ -55,6 +55,15 @@ class Files(pictures.PictureCase):
         self.refused(-32004, "frame.render", by=c, path="params.height", width=64, height=65)
         self.refused(-32004, "frame.render", by=c, path="params.width")
 
+    def test_pictures_of_many_sizes_are_not_kept(self):
+        def ask(count):
+            for i in range(count):
+                self.c.call("frame.render", width=100 + 7 * i % 300, height=100 + 11 * i % 300)
+        ask(40)
+        before = self.server.rss_mib()
+        ask(200)
+        self.grew_less(before, 24)
+
     def test_the_server_says_what_it_draws(self):
         capabilities = self.c.call("server.hello")["capabilities"]
         self.assertLessEqual({"frames:jpeg", "frames:png", "frames:rgba"}, set(capabilities))
