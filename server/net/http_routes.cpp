@@ -85,6 +85,15 @@ HttpResponse answer_file(const HttpRequest& request, const WebFile& file) {
   return response;
 }
 
+/// What a GET would be answered, but for its pictures.
+HttpResponse answer_stream_head(const HttpRequest& request, const ScenePath& path, const SessionContext& context) {
+  auto prepared = prepare_stream(request, path, context);
+  if (auto* refusal = std::get_if<HttpResponse>(&prepared)) return std::move(*refusal);
+  HttpResponse response = http_answer(request, 200, kPictureStreamType, {});
+  response.erase(http::field::content_length);  // pictures without end have none
+  return response;
+}
+
 HttpResponse answer_get(const HttpRequest& request, std::string_view path, SessionContext& context) {
   if (path == "/healthz") return http_answer(request, 200, kText, "ok\n");
   if (path == "/readyz") {
@@ -156,7 +165,7 @@ asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& 
   if (const auto scene = parse_scene_path(path)) {
     if (scene->leaf == "frame.png" || scene->leaf == "frame.jpg") co_return co_await answer_frame(request, *scene, context);
     // A GET of it never comes here: it becomes a session of its own.
-    if (scene->leaf == "stream.mjpg") co_return http_answer(request, 200, kPictureStreamType, {});
+    if (scene->leaf == "stream.mjpg") co_return answer_stream_head(request, *scene, context);
   }
   co_return answer_get(request, path, context);
 }

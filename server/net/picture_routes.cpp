@@ -99,6 +99,7 @@ std::optional<ScenePath> parse_scene_path(std::string_view path) {
 
 Result<std::string> query_json(std::string_view target, std::initializer_list<Member> given) {
   std::string json = "{";
+  std::vector<std::string> names;
   const auto add = [&json](std::string_view name, std::string_view value) {
     if (json.size() > 1) json += ',';
     protocol::append_json_string(name, json);
@@ -116,12 +117,16 @@ Result<std::string> query_json(std::string_view target, std::initializer_list<Me
     rest.remove_prefix(std::min(rest.size(), pair.size() + 1));
     const std::size_t equals = pair.find('=');
     const std::string name = decoded(pair.substr(0, equals), true);
-    if (name.empty() || name == "token") continue;
+    if (pair.empty() || name == "token") continue;
     const auto said = std::find_if(given.begin(), given.end(), [&](const Member& m) { return m.name == name; });
     if (said != given.end()) {
       return fail(ErrorCode::InvalidParams, fmt::format("expected it in the path alone, which says \"{}\"", said->value),
                   "params." + name);
     }
+    if (std::find(names.begin(), names.end(), name) != names.end()) {
+      return fail(ErrorCode::InvalidParams, "expected it once, found it again", "params." + name);
+    }
+    names.push_back(name);
     add(name, equals == std::string_view::npos ? std::string() : decoded(pair.substr(equals + 1), true));
   }
   // Strings, even where they look like numbers.

@@ -27,7 +27,7 @@ struct Member {
 };
 /// The query's pairs as a JSON object: what reads as a JSON number becomes one, everything else a string. `token`, which
 /// says who asks and not what for, is left out.
-/// @return InvalidParams where the query says what the path says
+/// @return InvalidParams where the query says what the path says, or says something twice
 [[nodiscard]] Result<std::string> query_json(std::string_view target, std::initializer_list<Member> given);
 
 /// GET frame.png and frame.jpg: one picture.

@@ -38,14 +38,19 @@ def wait_until(condition, what, seconds=PATIENCE_S):
 
 
 class Server:
-    """A server of its own on a port that the system picked. close() ends it and looks at how it went."""
+    """A server of its own on a port that the system picked. close() ends it and looks at how it went.
 
-    def __init__(self, *options, assets=(), auth=("--no-auth",), listen="127.0.0.1:0"):
+    With render it draws pictures; what that needs takes a fifth of a second to start, so it is not the default.
+    """
+
+    def __init__(self, *options, assets=(), auth=("--no-auth",), listen="127.0.0.1:0", render=False):
         self.folder = tempfile.mkdtemp(prefix="tweend-e2e-")
         self.port_file = os.path.join(self.folder, "port")
         self.log = os.path.join(self.folder, "log")
         self.clients = []
         command = [TWEEND, "serve", "--listen", listen, "--port-file", self.port_file, *auth]
+        if not render:
+            command.append("--no-render")
         for folder in assets:
             command += ["--assets", folder]
         self.process = None
@@ -124,11 +129,12 @@ class TestCase(unittest.TestCase):
     """Each test gets a server with these options and a line client of it."""
     options = ()
     assets = ()
+    render = False
     starts_server = True
 
     def setUp(self):
         if self.starts_server:
-            self.server = self.serve(*self.options, assets=self.assets)
+            self.server = self.serve(*self.options, assets=self.assets, render=self.render)
             self.c = self.server.line()
 
     def serve(self, *options, **kw):

@@ -13,6 +13,7 @@ GOOD = {
     "edit.apply": {"edits": [{"method": "light.set", "params": {"ambient": 1}}]}, "playback.play": {}, "playback.pause": {},
     "playback.stop": {}, "playback.seek": {"time": 1}, "playback.step": {"keyframes": 1}, "playback.set": {"speed": 2},
     "playback.get": {}, "camera.set": {"eye": [1, 2, 3]}, "light.set": {"ambient": 1}, "vertices.sample": {},
+    "frame.render": {"width": 8, "height": 8},
     "stream.open": {"kind": "vertices"}, "stream.update": {"stream": 1, "rate": 5}, "stream.close": {"stream": 1},
     "events.subscribe": {}, "events.unsubscribe": {},
 }

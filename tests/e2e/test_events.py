@@ -140,13 +140,19 @@ class Endings(Watched):
         self.assertEqual(rest[0].sequence, final.sequence + 1)
 
     def test_ended_after_the_final_packets_of_all_streams(self):
-        streams = [self.w.call("stream.open", kind="vertices", rate=rate)["stream"] for rate in (4, 30, 30, 240)]
+        streams = [self.w.call("stream.open", kind="vertices", rate=rate)["stream"] for rate in (5, 30, 30, 240)]
         for _ in range(3):
             self.c.call("playback.play", time=0, speed=10, loop="once")
             came = self.wait_for_the_end()
             for stream in streams:
                 final = [m for m in came if isinstance(m, Packet) and m.stream == stream][-1]
                 self.assertEqual((final.media_us, final.flags & LAST), (2_000_000, LAST), f"stream {stream}")
+
+    def test_a_stream_that_is_asked_for_rarely_does_not_hold_the_end_up(self):
+        stream = self.w.call("stream.open", kind="vertices", rate=0.01)["stream"]
+        self.w.packet(stream)
+        self.c.call("playback.play", time=0, speed=10, loop="once")
+        self.w.event("playback.ended", seconds=10)
 
     def test_ended_without_any_stream(self):
         self.c.call("playback.play", time=0, speed=50, loop="once")
