@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 #include <fmt/format.h>
+#include <malloc.h>
 
 #include <algorithm>
 #include <deque>
@@ -30,6 +31,16 @@ int supported_samples(int wanted, bool software) {
   glGetIntegerv(GL_MAX_SAMPLES, &most);
   if (wanted == 0) wanted = software ? 1 : kSamplesOnGpu;
   return std::clamp(wanted, 1, static_cast<int>(most));
+}
+
+/// llvmpipe takes its memory for each picture anew, tens of megabytes for 100,000 triangles, in pieces of 64 KiB, and gives
+/// all of it back at the end. By default the C library then hands it on to the kernel, and the next picture begins with
+/// thousands of page faults.
+void keep_freed_memory() {
+  constexpr int kMiB = 1 << 20;
+  mallopt(M_TRIM_THRESHOLD, 128 * kMiB);
+  // Setting one stops the C library from adapting the other: this is where it would get to by itself.
+  mallopt(M_MMAP_THRESHOLD, 32 * kMiB);
 }
 
 }  // namespace
@@ -160,6 +171,7 @@ void RenderThread::run(RenderOptions options, std::promise<void> opened) {
   } else {
     device_ = context.error();
   }
+  if (context && (*context)->software()) keep_freed_memory();
   opened.set_value();
 
   for (;;) {

@@ -17,6 +17,8 @@ class ServerProcess {
   ServerProcess& operator=(const ServerProcess&) = delete;
 
   [[nodiscard]] std::uint16_t port() const noexcept { return port_; }
+  /// What all its threads have computed so far.
+  [[nodiscard]] double cpu_seconds() const;
 
  private:
   pid_t pid_ = -1;
