@@ -29,9 +29,9 @@ class FrameJob {
 };
 
 struct RenderOptions {
-  bool off = false;                               ///< draw nothing: every job is refused
   int samples = 0;                                ///< a pixel; 0: 4 on a GPU, 1 on a software device
   std::size_t gpu_bytes = std::size_t{1} << 30U;  ///< for meshes and keyframes
+  bool off = false;                               ///< draw nothing: every job is refused
 };
 
 /// The one thread that owns the GL context. Pictures are drawn earliest deadline first; while one is drawn the one before
