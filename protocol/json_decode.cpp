@@ -24,6 +24,7 @@ bool inside(double v, const Range& r) noexcept { return (r.min_excluded ? v > r.
 
 std::string expected_number(std::string_view what, const Range& r) {
   const bool below = std::isfinite(r.min), above = std::isfinite(r.max);
+  if (below && above && r.min_excluded) return fmt::format("{} above {} and up to {}", what, r.min, r.max);
   if (below && above) return fmt::format("{} from {} to {}", what, r.min, r.max);
   if (below) return fmt::format("{} {} {}", what, r.min_excluded ? "above" : "of at least", r.min);
   if (above) return fmt::format("{} of at most {}", what, r.max);
