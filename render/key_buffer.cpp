@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace tweend::render {
+namespace {
+
+/// A keyframe that so many pictures did not need has likely been replaced by an edit.
+constexpr std::uint64_t kStalePictures = 1'000;
+
+}  // namespace
 
 KeyBuffer::KeyBuffer(std::size_t slot_floats, std::size_t most_bytes)
     : slot_bytes_(slot_floats * sizeof(float)), most_slots_(std::max<std::size_t>(4, most_bytes / slot_bytes_)) {}
@@ -11,7 +17,8 @@ KeyBuffer::KeyBuffer(std::size_t slot_floats, std::size_t most_bytes)
 std::array<GLintptr, 4> KeyBuffer::place(std::span<const KeySource> keys, std::size_t expected) {
   ++pictures_;
   const std::size_t wanted = std::min(std::max(expected, keys.size()), most_slots_);
-  if (slots_.size() < wanted) grow(wanted);
+  // Keyframes are added one at a time: doubling keeps the copies few.
+  if (slots_.size() < wanted) grow(std::min(std::max(wanted, 2 * slots_.size()), most_slots_));
   // Those that are there come first: a slot that this picture binds is not given to another of its keys.
   for (const KeySource& key : keys) {
     if (const auto at = slot_of_.find(key.id); at != slot_of_.end()) slots_[at->second].used = pictures_;
@@ -40,8 +47,8 @@ std::uint32_t KeyBuffer::free_slot() {
         slots_.begin());
   };
   const std::uint32_t slot = least();
-  if (slots_[slot].used == 0 || slots_.size() >= most_slots_) return slot;
-  // Keyframes are added one at a time: doubling keeps the copies few.
+  const bool stale = pictures_ - slots_[slot].used > kStalePictures;
+  if (slots_[slot].used == 0 || stale || slots_.size() >= most_slots_) return slot;
   grow(std::min(slots_.size() * 2, most_slots_));
   return least();
 }

@@ -8,8 +8,8 @@
 namespace tweend::render {
 namespace {
 
-/// What a pool keeps at most: some views have a picture being read into and one being encoded.
-constexpr std::size_t kKept = 16;
+/// What a pool keeps at most, bytes: a dozen and a half pictures of 1280 × 720, one of 4096 × 4096.
+constexpr std::size_t kKeptBytes = std::size_t{64} << 20U;
 
 }  // namespace
 
@@ -21,17 +21,12 @@ ReadbackPool::~ReadbackPool() {
 PixelsPtr ReadbackPool::take(Size size) {
   const std::size_t bytes = std::size_t{4} * size.width * size.height;
   std::unique_ptr<Pixels> pixels;
-  std::vector<std::unique_ptr<Pixels>> surplus;  // deleted here, on the context's thread
   {
     const std::lock_guard lock(mutex_);
     const auto fits = std::find_if(free_.begin(), free_.end(), [bytes](const auto& p) { return p->capacity_ == bytes; });
     if (fits != free_.end()) {
       pixels = std::move(*fits);
       free_.erase(fits);
-    }
-    while (free_.size() > kKept) {
-      surplus.push_back(std::move(free_.front()));
-      free_.erase(free_.begin());
     }
   }
   if (!pixels) {
@@ -51,6 +46,18 @@ PixelsPtr ReadbackPool::take(Size size) {
   const std::lock_guard lock(mutex_);
   ++out_;
   return PixelsPtr(pixels.release());
+}
+
+void ReadbackPool::trim() {
+  std::vector<std::unique_ptr<Pixels>> surplus;  // deleted behind the lock
+  const std::lock_guard lock(mutex_);
+  std::size_t kept = 0;
+  for (const auto& pixels : free_) kept += pixels->capacity_;
+  while (kept > kKeptBytes) {
+    kept -= free_.front()->capacity_;
+    surplus.push_back(std::move(free_.front()));
+    free_.erase(free_.begin());
+  }
 }
 
 void ReadbackPool::give_back(std::unique_ptr<Pixels> pixels) {

@@ -46,6 +46,8 @@ class ReadbackPool {
 
   /// Room for a picture; null if the GPU has none.
   [[nodiscard]] PixelsPtr take(Size size);
+  /// Lets go of what has come back beyond a few pictures.
+  void trim();
 
  private:
   friend void intrusive_ptr_release(const Pixels* pixels) noexcept;

@@ -10,7 +10,8 @@
 namespace tweend::render {
 namespace {
 
-constexpr std::size_t kKept = 8;
+/// What a pool keeps at most, bytes: eight targets of 1280 × 720, one of 4096 × 4096.
+constexpr std::size_t kKeptBytes = std::size_t{128} << 20U;
 
 }  // namespace
 
@@ -80,7 +81,12 @@ Result<RenderTargetPtr> RenderTargetPool::take(Size size) {
 
 void RenderTargetPool::give_back(RenderTargetPtr target) {
   free_.push_back(std::move(target));
-  if (free_.size() > kKept) free_.erase(free_.begin());
+  std::size_t kept = 0;
+  for (const RenderTargetPtr& free : free_) kept += free->bytes();
+  while (kept > kKeptBytes) {
+    kept -= free_.front()->bytes();
+    free_.erase(free_.begin());
+  }
 }
 
 }  // namespace tweend::render

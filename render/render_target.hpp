@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -19,6 +20,10 @@ class RenderTarget {
 
   [[nodiscard]] Size size() const noexcept { return size_; }
   [[nodiscard]] int samples() const noexcept { return samples_; }
+  /// Of colour and depth, about.
+  [[nodiscard]] std::size_t bytes() const noexcept {
+    return std::size_t{8} * size_.width * size_.height * static_cast<std::size_t>(samples_);
+  }
   /// What is drawn to.
   [[nodiscard]] GLuint framebuffer() const noexcept { return drawn_.framebuffer.name(); }
   /// Makes one sample of each pixel's several.

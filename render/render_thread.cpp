@@ -26,6 +26,12 @@ Result<std::unique_ptr<EglContext>> switched_off() {
   return fail(ErrorCode::Unavailable, "expected a server that draws, found one started with --no-render");
 }
 
+std::uint32_t supported_side() {
+  GLint side = 0;
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &side);
+  return static_cast<std::uint32_t>(side);
+}
+
 int supported_samples(int wanted, bool software) {
   GLint most = 1;
   glGetIntegerv(GL_MAX_SAMPLES, &most);
@@ -79,6 +85,14 @@ class RenderThread::Loop {
     InFlight& oldest = in_flight_.front();
     const GLenum state = glClientWaitSync(oldest.fence, GL_SYNC_FLUSH_COMMANDS_BIT, timeout_ns);
     if (state == GL_TIMEOUT_EXPIRED) return false;
+    if (state == GL_WAIT_FAILED) {
+      InFlight lost = std::move(oldest);
+      in_flight_.pop_front();
+      glDeleteSync(lost.fence);
+      lost.job->drawn(
+          fail(ErrorCode::Unavailable, "expected the GPU to finish a picture, found its context lost; restart the server"));
+      return true;
+    }
     glDeleteSync(oldest.fence);
     if (!oldest.reading) {
       // Only now: a software device would draw the whole picture inside this call, with everyone waiting.
@@ -91,6 +105,7 @@ class RenderThread::Loop {
     in_flight_.pop_front();
     const Size size = done.target->size();
     targets_.give_back(std::move(done.target));
+    readback_.trim();
     if (take_gl_error() == GL_OUT_OF_MEMORY) {
       done.job->drawn(no_memory(size));
     } else {
@@ -164,6 +179,7 @@ void RenderThread::run(RenderOptions options, std::promise<void> opened) {
     if (renderer) {
       const int samples = supported_samples(options.samples, (*context)->software());
       loop = std::make_unique<Loop>(std::move(*renderer), samples);
+      largest_side_ = supported_side();
       device_ = fmt::format("{}, {} sample{} a pixel", (*context)->description(), samples, samples == 1 ? "" : "s");
     } else {
       device_ = renderer.error();

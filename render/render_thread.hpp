@@ -47,6 +47,8 @@ class RenderThread {
 
   /// What draws ("llvmpipe …"), or why nothing does.
   [[nodiscard]] const Result<std::string>& device() const noexcept { return device_; }
+  /// The longest side of a picture that the device draws, pixels; 0 where there is none.
+  [[nodiscard]] std::uint32_t largest_side() const noexcept { return largest_side_; }
   /// Whether there should be one.
   [[nodiscard]] bool wanted() const noexcept { return wanted_; }
   [[nodiscard]] const std::vector<DeviceAttempt>& attempts() const noexcept { return attempts_; }
@@ -68,6 +70,7 @@ class RenderThread {
 
   const bool wanted_;
   Result<std::string> device_{Error{}};
+  std::uint32_t largest_side_ = 0;
   std::vector<DeviceAttempt> attempts_;
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <glm/gtc/matrix_inverse.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 #include <glm/vec4.hpp>
@@ -22,6 +21,13 @@ struct FrameBlock {
   glm::vec4 grid_color;
 };
 static_assert(sizeof(FrameBlock) == 64 + 5 * 16);
+
+/// Turns normals as the inverse transpose does, but for their length, and also where an actor is scaled flat and has no
+/// inverse: the cofactors, with the sign of the determinant.
+glm::mat3 normal_matrix(const glm::mat3& m) {
+  const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+  return glm::determinant(m) < 0.0F ? -cofactors : cofactors;
+}
 
 /// Cells of 1, 10, 100 … metres (or 0.1 …), a good dozen of them between the eye and what it looks at.
 float grid_cell_m(float focus_m) { return std::pow(10.0F, std::floor(std::log10(std::max(focus_m, 1e-6F) / 3.0F))); }
@@ -93,7 +99,7 @@ void Renderer::draw_item(const DrawItem& item) {
   const glm::mat3 linear(item.world_from_model);
   p.program.use();
   p.program.set(p.world_from_model, item.world_from_model);
-  p.program.set(p.world_from_model_normal, glm::inverseTranspose(linear));
+  p.program.set(p.world_from_model_normal, normal_matrix(linear));
   p.program.set(p.weights, glm::vec4(item.weight[0], item.weight[1], item.weight[2], item.weight[3]));
   p.program.set(p.nearest, static_cast<int>(item.nearest));
   // A mirrored actor's triangles run the other way round.
@@ -116,7 +122,7 @@ void Renderer::draw_grid(const Picture& picture) const {
   grid_program_.set(grid_center_, glm::vec2(ahead.x, ahead.z));
   glBindVertexArray(no_vertices_.name());
   glEnable(GL_BLEND);
-  glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+  glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);  // the picture stays opaque
   glDepthMask(GL_FALSE);
   glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }

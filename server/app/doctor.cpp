@@ -15,6 +15,9 @@ int doctor() {
   for (const render::DeviceAttempt& attempt : renderer.attempts()) {
     std::cout << fmt::format("  {:<9}  {}: {}\n", attempt.taken ? "taken" : "not taken", attempt.name, attempt.outcome);
   }
+  if (!renderer.attempts().empty() && renderer.attempts().back().taken) {
+    std::cout << "  not tried  whatever comes after the one that was taken\n";
+  }
   const bool draws = renderer.device().has_value();
   std::cout << (draws ? fmt::format("  drawing with {}\n", *renderer.device()) : "  nothing draws: frames will be refused\n");
   const auto page = load_page({});

@@ -4,6 +4,12 @@
 #include <utility>
 
 namespace tweend::app {
+namespace {
+
+/// Encoding a large picture takes a worker for a second: the others stay for streams and commands.
+constexpr std::size_t kStillsAtOnce = 1;
+
+}  // namespace
 
 Result<std::vector<assets::AssetRoot>> open_roots(const std::vector<std::string>& folders) {
   std::vector<assets::AssetRoot> roots;
@@ -20,10 +26,11 @@ Engine::Engine(const Limits& limits, std::vector<assets::AssetRoot> roots, const
       metrics_(metrics),
       library_(std::move(roots), limits_),
       renderer_(render),
+      stills_(workers_, renderer_, kStillsAtOnce),
       stage_(store_, limits_, metrics_),
       hub_(stage_, workers_, renderer_, deliver, metrics_),
       events_(hub_, deliver, metrics_),
-      services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_} {}
+      services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_, stills_} {}
 
 Engine::~Engine() { stop(); }
 

@@ -39,6 +39,7 @@ class Engine {
   store::MemoryStore store_;
   WorkerPool workers_{std::max(2U, std::thread::hardware_concurrency())};
   render::RenderThread renderer_;
+  streams::StillQueue stills_;
   stage::Stage stage_;
   streams::Hub hub_;
   commands::EventHub events_;

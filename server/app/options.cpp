@@ -52,6 +52,7 @@ void add_limit_options(CLI::App& serve, ServeOptions& o) {
   add("--max-clips", l.clips_per_actor, "Clips an actor");
   add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
   add("--max-undo", l.undo_steps, "Steps that can be undone");
+  add("--max-stream-pixels", l.stream_pixels, "Pixels of a connection's streams of frames together");
   add("--max-frame-side", l.frame_side, "Pixels of a picture's width, and of its height");
   add("--max-gpu-bytes", o.render.gpu_bytes, "Bytes of the GPU's memory for meshes and keyframes");
   add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");

@@ -18,6 +18,7 @@ struct Limits {
   std::size_t keyframes_per_clip = 100'000;
   std::size_t clips_per_actor = 1'024;
   std::size_t undo_steps = 1'000;
+  std::size_t stream_pixels = 64U << 20U;      ///< of a connection's streams of frames together
   std::size_t frame_side = 4'096;              ///< pixels of a picture's width, and of its height
   std::size_t asset_bytes = 256U << 20U;       ///< one asset's files together
   std::size_t texture_pixels = 4'096 * 4'096;  ///< one texture's; those of one asset together: 16 times as many

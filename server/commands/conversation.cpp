@@ -11,6 +11,8 @@ namespace {
 
 /// Messages above this are parsed, decoded and printed on workers.
 constexpr std::size_t kLargeJson = 64U << 10U;
+/// Answers of a batch leave together: this is where they stop to grow.
+constexpr std::size_t kBatchAnswerBytes = 64U << 20U;
 /// What may wait before the connection stops reading.
 constexpr std::size_t kQueuedMessages = 1'024;
 constexpr std::size_t kQueuedBytes = 1U << 20U;
@@ -96,10 +98,10 @@ void Conversation::close() {
   closed_ = true;
   progress_ = {};
   services_.events.forget(peer_.get());
-  for (const auto& [stream, key] : streams_) {
+  for (const auto& [stream, open] : streams_) {
     add(services_.metrics.streams, -1);
     services_.stage.post(
-        [&hub = services_.hub, key = key, peer = peer_, stream = stream] { hub.unsubscribe(key, peer.get(), stream); });
+        [&hub = services_.hub, key = open.key, peer = peer_, stream = stream] { hub.unsubscribe(key, peer.get(), stream); });
   }
   streams_.clear();
   units_.clear();
@@ -183,6 +185,13 @@ void Conversation::start(const ItemKey& key) {
   Item& item = find_unit(key.unit)->items[key.item];
   started(item.command != nullptr && !item.refused && item.command->is_edit());
   if (item.refused || item.command == nullptr) return finish(key, Result<std::string>(item.refused.value_or(Error{})));
+  if (find_unit(key.unit)->answer_bytes > kBatchAnswerBytes) {
+    return finish(
+        key, Result<std::string>(
+                 fail(ErrorCode::Limit, fmt::format("expected a batch with answers of at most {} bytes, found more; ask in "
+                                                    "smaller batches",
+                                                    kBatchAnswerBytes))));
+  }
   if (item.command->role > role_) {
     return finish(
         key, Result<std::string>(fail(ErrorCode::Forbidden, fmt::format("expected the role {}, found {}",
@@ -327,6 +336,7 @@ void Conversation::finish(const ItemKey& key, Answer answer, Task afterwards) {
   if (item.command != nullptr && !item.refused && item.command->is_edit()) --outstanding_edits_;
   if (answer.failed) add(services_.metrics.request_errors_total);
   item.text = std::move(answer.text);
+  unit->answer_bytes += item.text.size();
   item.afterwards = std::move(afterwards);
   item.params.reset();
   ++unit->answered;

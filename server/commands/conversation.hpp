@@ -46,8 +46,13 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   [[nodiscard]] const Post& to_network() const noexcept { return to_network_; }
   [[nodiscard]] const std::shared_ptr<Peer>& peer() const noexcept { return peer_; }
   [[nodiscard]] bool closed() const noexcept { return closed_; }
+  /// A stream that was opened. Its producer hears of it once the answer is on its way, which in a batch may be much later.
+  struct OpenStream {
+    streams::StreamKey key;
+    bool subscribed = false;
+  };
   /// This connection's streams, by their number.
-  [[nodiscard]] std::map<std::uint32_t, streams::StreamKey>& streams() noexcept { return streams_; }
+  [[nodiscard]] std::map<std::uint32_t, OpenStream>& streams() noexcept { return streams_; }
   [[nodiscard]] bool has_stream(std::uint32_t stream) const noexcept { return streams_.contains(stream); }
   [[nodiscard]] std::uint32_t next_stream() noexcept { return ++last_stream_; }
 
@@ -67,6 +72,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
     std::vector<Item> items;
     std::size_t answered = 0;
     std::size_t bytes = 0;
+    std::size_t answer_bytes = 0;
   };
   struct ItemKey {
     std::uint64_t unit;
@@ -115,7 +121,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   bool worker_busy_ = false;  ///< a request is with a worker: its effects are not in the strand's queue yet
   bool advancing_ = false;
   bool closed_ = false;
-  std::map<std::uint32_t, streams::StreamKey> streams_;
+  std::map<std::uint32_t, OpenStream> streams_;
   std::uint32_t last_stream_ = 0;
 };
 

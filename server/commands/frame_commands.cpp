@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "protocol/base64.hpp"
@@ -30,13 +31,12 @@ void render_frame(const FrameParams& p, const QueryContext& context, const Async
   Result<streams::StillRequest> request = still_request(p, context);
   if (!request) return done(request.error());
   FrameResult result{0.0, request->size.width, request->size.height, request->format, {}};
-  streams::render_still(std::move(*request), context.services.workers, context.services.renderer,
-                        [result = std::move(result), done](Result<streams::Still> still) mutable {
-                          if (!still) return done(still.error());
-                          result.time = still->time_s;
-                          protocol::append_base64(still->file, result.base64);
-                          done(std::move(result));
-                        });
+  context.services.stills.render(std::move(*request), [result = std::move(result), done](Result<streams::Still> still) mutable {
+    if (!still) return done(still.error());
+    result.time = still->time_s;
+    protocol::append_base64(still->file, result.base64);
+    done(std::move(result));
+  });
 }
 
 Result<std::uint32_t> side(std::string_view name, std::uint64_t pixels, std::size_t most) {
@@ -48,10 +48,12 @@ Result<std::uint32_t> side(std::string_view name, std::uint64_t pixels, std::siz
 }  // namespace
 
 Result<render::Size> frame_size(const std::optional<std::uint64_t>& width, const std::optional<std::uint64_t>& height,
-                                const Limits& limits) {
+                                const Services& services) {
+  if (const auto& device = services.renderer.device(); !device) return device.error();
+  const std::size_t most = std::min<std::size_t>(services.limits.frame_side, services.renderer.largest_side());
   render::Size size;
-  TWEEND_ASSIGN(size.width, side("width", width.value_or(kDefaultWidth), limits.frame_side));
-  TWEEND_ASSIGN(size.height, side("height", height.value_or(kDefaultHeight), limits.frame_side));
+  TWEEND_ASSIGN(size.width, side("width", width.value_or(kDefaultWidth), most));
+  TWEEND_ASSIGN(size.height, side("height", height.value_or(kDefaultHeight), most));
   return size;
 }
 
@@ -60,7 +62,7 @@ Result<streams::StillRequest> still_request(const FrameParams& p, const QueryCon
   streams::StillRequest request;
   request.view = context.view->find(scene);
   if (!request.view) return no_such_scene(scene);
-  TWEEND_ASSIGN(request.size, frame_size(p.width, p.height, context.services.limits));
+  TWEEND_ASSIGN(request.size, frame_size(p.width, p.height, context.services));
   request.time_s = p.time;
   request.now_us = context.now_us;
   request.format = p.format.value_or(streams::ImageFormat::Png);
@@ -69,7 +71,6 @@ Result<streams::StillRequest> still_request(const FrameParams& p, const QueryCon
     TWEEND_TRY(check_own_camera(*p.camera, *request.view->scene));
     request.camera = p.camera->request();
   }
-  if (const auto& device = context.services.renderer.device(); !device) return device.error();
   return request;
 }
 

@@ -45,7 +45,7 @@ struct FrameParams {
 /// The size asked for, within the server's limits and those of its device.
 /// @return Limit naming the parameter and both numbers
 [[nodiscard]] Result<render::Size> frame_size(const std::optional<std::uint64_t>& width,
-                                              const std::optional<std::uint64_t>& height, const Limits& limits);
+                                              const std::optional<std::uint64_t>& height, const Services& services);
 
 /// What the parameters come to. @return the errors of the parameters; Unavailable where nothing draws
 [[nodiscard]] Result<streams::StillRequest> still_request(const FrameParams& p, const QueryContext& context);

@@ -11,6 +11,7 @@
 #include "server/commands/event_hub.hpp"
 #include "server/stage/stage.hpp"
 #include "server/streams/hub.hpp"
+#include "server/streams/still_queue.hpp"
 
 namespace tweend::commands {
 
@@ -24,6 +25,7 @@ struct Services {
   EventHub& events;
   WorkerPool& workers;
   render::RenderThread& renderer;
+  streams::StillQueue& stills;
 };
 
 }  // namespace tweend::commands

@@ -115,7 +115,9 @@ std::string open_result(std::uint32_t stream, const streams::StreamKey& key, con
 
 void subscribe_later(const std::shared_ptr<Conversation>& conversation, std::uint32_t stream) {
   const Services& services = conversation->services();
-  const streams::StreamKey key = conversation->streams().at(stream);
+  Conversation::OpenStream& open = conversation->streams().at(stream);
+  open.subscribed = true;
+  const streams::StreamKey key = open.key;
   services.stage.post([&hub = services.hub, key, sink = std::weak_ptr<streams::PacketSink>(conversation->peer()), stream] {
     hub.subscribe(key, {sink, stream});
   });
@@ -155,15 +157,16 @@ void update_stream(const UpdateParams& p, const std::shared_ptr<Conversation>& c
   const auto at = conversation->streams().find(stream);
   if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});
   const Services& services = conversation->services();
-  const Result<streams::StreamKey> key = updated_key(p, at->second, services);
+  Conversation::OpenStream& open = at->second;
+  const Result<streams::StreamKey> key = updated_key(p, open.key, services);
   if (!key) return done({key.error(), {}});
-  if (*key != at->second) {
+  if (*key != open.key && open.subscribed) {
     const std::weak_ptr<streams::PacketSink> sink(conversation->peer());
-    services.stage.post([&hub = services.hub, from = at->second, to = *key, sink, stream] {
+    services.stage.post([&hub = services.hub, from = open.key, to = *key, sink, stream] {
       hub.retune(from, to, {sink, stream});
     });
-    at->second = *key;
   }
+  open.key = *key;
   done({protocol::encode(EmptyResult{}), {}});
 }
 
@@ -171,11 +174,27 @@ void close_stream(const CloseParams& p, const std::shared_ptr<Conversation>& con
   const auto stream = static_cast<std::uint32_t>(p.stream);
   const auto at = conversation->streams().find(stream);
   if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});
-  unsubscribe_later(conversation, at->second, stream);
+  unsubscribe_later(conversation, at->second.key, stream);
   conversation->streams().erase(at);
   conversation->peer()->forget_stream(stream);
   add(conversation->services().metrics.streams, -1);
   done({protocol::encode(EmptyResult{}), {}});
+}
+
+/// Each stream's latest picture stays in memory.
+Status check_pixels(const streams::StreamKey& key, Conversation& conversation) {
+  const auto pixels = [](const streams::StreamKey& k) {
+    const auto* frames = std::get_if<streams::FramesSpec>(&k.what);
+    return frames == nullptr ? std::size_t{0} : std::size_t{frames->size.width} * frames->size.height;
+  };
+  std::size_t sum = pixels(key);
+  for (const auto& [stream, open] : conversation.streams()) sum += pixels(open.key);
+  const std::size_t most = conversation.services().limits.stream_pixels;
+  if (sum <= most || pixels(key) == 0) return {};
+  return fail(ErrorCode::Limit,
+              fmt::format("expected streams of frames of at most {} pixels together on a connection, found {}; "
+                          "close one, or ask for smaller ones",
+                          most, sum));
 }
 
 Status only_of_frames(bool given, std::string_view name) {
@@ -220,7 +239,7 @@ Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::St
     TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
     frames.actor = actor->name;
   }
-  TWEEND_ASSIGN(frames.size, frame_size(p.width, p.height, services.limits));
+  TWEEND_ASSIGN(frames.size, frame_size(p.width, p.height, services));
   frames.encoding = frame_encoding(p.encoding.value_or(StreamEncoding::Jpeg));
   // Only of a JPEG is there a quality to tell producers apart by.
   if (frames.encoding == streams::FrameEncoding::Jpeg) frames.quality = static_cast<int>(p.quality.value_or(kDefaultQuality));
@@ -228,7 +247,6 @@ Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::St
     TWEEND_TRY(check_own_camera(*p.camera, *scene->scene));
     frames.camera = p.camera->request();
   }
-  if (const auto& device = services.renderer.device(); !device) return device.error();
   key.what = std::move(frames);
   return key;
 }
@@ -243,8 +261,9 @@ void open_stream(const StreamOpenParams& p, const std::shared_ptr<Conversation>&
   const stage::StageViewPtr view = services.stage.view();
   const Result<streams::StreamKey> key = stream_key(p, *view, services);
   if (!key) return done({key.error(), {}});
+  if (const Status fits = check_pixels(*key, *conversation); !fits) return done({fits.error(), {}});
   const std::uint32_t stream = conversation->next_stream();
-  conversation->streams()[stream] = *key;
+  conversation->streams()[stream] = {*key, false};
   add(services.metrics.streams);
   services.workers.post([conversation, stream, key = *key, view = view->find(key->scene), done] {
     conversation->to_network()([conversation, stream, text = open_result(stream, key, *view), done] {

@@ -49,7 +49,9 @@ struct LightResult {
 
 Result<CameraResult> set_camera(const CameraParams& p, EditContext& context) {
   model::SceneSettings settings = context.scene().settings;
-  auto placed = model::place(settings.camera, p.request(), model::visible_bounds(context.scene()));
+  const model::CameraRequest request = p.request();
+  const auto visible = request.fit ? model::visible_bounds(context.scene()) : std::nullopt;
+  auto placed = model::place(settings.camera, request, visible);
   if (!placed) return fail(placed.error().code, placed.error().message, "params." + placed.error().path);
   settings.camera = *placed;
   context.transaction.apply(stage::SetSceneSettings{settings});
@@ -68,7 +70,10 @@ Result<LightResult> set_light(const LightParams& p, EditContext& context) {
 }  // namespace
 
 Status check_own_camera(const OwnCamera& camera, const model::Scene& scene) {
-  const auto placed = model::place(scene.settings.camera, camera.request(), model::visible_bounds(scene));
+  const model::CameraRequest request = camera.request();
+  // What is visible takes a look at every keyframe: only where it is asked for.
+  const auto visible = request.fit ? model::visible_bounds(scene) : std::nullopt;
+  const auto placed = model::place(scene.settings.camera, request, visible);
   if (placed) return {};
   return fail(placed.error().code, placed.error().message, "params.camera." + placed.error().path);
 }

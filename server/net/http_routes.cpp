@@ -24,7 +24,6 @@ namespace http = boost::beast::http;
 
 constexpr std::string_view kText = "text/plain; charset=utf-8";
 constexpr std::string_view kJson = "application/json";
-constexpr std::string_view kPictureStreamType = "multipart/x-mixed-replace; boundary=tweend-frame";
 
 /// The client of one POST /rpc: it gets its answers and nothing else.
 class RpcPeer final : public commands::Peer {
@@ -89,7 +88,7 @@ HttpResponse answer_file(const HttpRequest& request, const WebFile& file) {
 HttpResponse answer_stream_head(const HttpRequest& request, const ScenePath& path, const SessionContext& context) {
   auto prepared = prepare_stream(request, path, context);
   if (auto* refusal = std::get_if<HttpResponse>(&prepared)) return std::move(*refusal);
-  HttpResponse response = http_answer(request, 200, kPictureStreamType, {});
+  HttpResponse response = http_answer(request, 200, kMultipartType, {});
   response.erase(http::field::content_length);  // pictures without end have none
   return response;
 }

@@ -10,8 +10,6 @@ namespace tweend::net {
 namespace {
 
 constexpr std::size_t kMessagesAtOnce = 32;
-constexpr std::string_view kPartEnd = "\r\n--tweend-frame\r\n";
-static_assert(kPartEnd.substr(4, kPartEnd.size() - 6) == kMultipartBoundary);
 
 constexpr unsigned char kTextFrame = 0x81;    // FIN, opcode 1
 constexpr unsigned char kBinaryFrame = 0x82;  // FIN, opcode 2
@@ -73,7 +71,7 @@ void Outbox::frame_part(Item& item) {
   const char* const end = fmt::format_to(item.prefix.data(), "Content-Type: image/jpeg\r\nContent-Length: {}\r\n\r\n",
                                          item.packet->header.payload_bytes);
   item.prefix_size = static_cast<std::size_t>(end - item.prefix.data());
-  item.suffix = kPartEnd;
+  item.suffix = kMultipartNext;
 }
 
 void Outbox::push_control(Item item) {
@@ -118,6 +116,12 @@ void Outbox::push_raw(std::string bytes) {
 }
 
 void Outbox::offer(std::uint32_t stream, const streams::PacketPtr& packet) {
+  // Who leaves a producer and comes back to it is given its latest packet, which it may have had.
+  const auto had = numbers_.find(stream);
+  if (had != numbers_.end() && had->second.source == packet->source &&
+      packet->header.sequence + had->second.base <= had->second.last) {
+    return;
+  }
   const auto waiting =
       std::find_if(data_.begin(), data_.end(), [stream](const Item& i) { return i.packet && i.stream == stream; });
   if (waiting == data_.end()) {

@@ -25,7 +25,11 @@ enum class Framing : std::uint8_t {
 };
 
 /// What stands between the parts of a Multipart answer.
-inline constexpr std::string_view kMultipartBoundary = "tweend-frame";
+#define TWEEND_BOUNDARY "tweend-frame"
+inline constexpr std::string_view kMultipartType = "multipart/x-mixed-replace; boundary=" TWEEND_BOUNDARY;
+inline constexpr std::string_view kMultipartBegin = "--" TWEEND_BOUNDARY "\r\n";
+inline constexpr std::string_view kMultipartNext = "\r\n--" TWEEND_BOUNDARY "\r\n";
+#undef TWEEND_BOUNDARY
 
 /// What waits to be written to one client, in two lanes: answers and notifications first, then packets. A packet that is
 /// still waiting when a newer one of its stream comes is replaced by it, so that a slow reader skips and never falls behind.

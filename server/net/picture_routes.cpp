@@ -83,7 +83,7 @@ bool is_number(std::string_view text) {
 struct Awaited {
   explicit Awaited(const asio::any_io_executor& executor) : arrived(executor, asio::steady_timer::time_point::max()) {}
   asio::steady_timer arrived;  ///< never expires: cancelled when the picture is there
-  std::optional<Result<streams::Still>> still;
+  std::optional<Result<std::string>> file;
 };
 
 }  // namespace
@@ -149,18 +149,22 @@ asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const Sce
   if (!still) co_return refused(request, still.error());
 
   const auto awaited = std::make_shared<Awaited>(co_await asio::this_coro::executor);
-  streams::render_still(std::move(*still), services.workers, services.renderer,
-                        [awaited, to_network = context.to_network](Result<streams::Still> done) {
-                          to_network([awaited, done = std::move(done)]() mutable {
-                            awaited->still = std::move(done);
-                            awaited->arrived.cancel();
-                          });
-                        });
-  while (!awaited->still) co_await awaited->arrived.async_wait(asio::as_tuple(asio::use_awaitable));
-  if (!*awaited->still) co_return refused(request, awaited->still->error());
-  const std::vector<std::byte>& file = (*awaited->still)->file;
-  co_return http_answer(request, 200, png ? "image/png" : "image/jpeg",
-                        std::string(reinterpret_cast<const char*>(file.data()), file.size()));
+  services.stills.render(std::move(*still), [awaited, to_network = context.to_network](Result<streams::Still> done) {
+    // Megabytes are copied here, on the worker.
+    Result<std::string> file = std::string();
+    if (done) {
+      file->assign(reinterpret_cast<const char*>(done->file.data()), done->file.size());
+    } else {
+      file = done.error();
+    }
+    to_network([awaited, file = std::move(file)]() mutable {
+      awaited->file = std::move(file);
+      awaited->arrived.cancel();
+    });
+  });
+  while (!awaited->file) co_await awaited->arrived.async_wait(asio::as_tuple(asio::use_awaitable));
+  if (!*awaited->file) co_return refused(request, awaited->file->error());
+  co_return http_answer(request, 200, png ? "image/png" : "image/jpeg", std::move(**awaited->file));
 }
 
 std::variant<commands::StreamOpenParams, HttpResponse> prepare_stream(const HttpRequest& request, const ScenePath& path,
@@ -180,12 +184,15 @@ asio::awaitable<void> run_picture_session(Tcp::socket socket, commands::StreamOp
   connection->begin(context.services, context.to_network, kEveryonesRole);
   const Registered registered(context, [&connection] { connection->end_soon(kFarewell); });
   connection->push_raw(
-      fmt::format("HTTP/1.1 200 OK\r\nServer: tweend/{}\r\nContent-Type: multipart/x-mixed-replace; boundary={}\r\n"
-                  "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n--{}\r\n",
-                  TWEEND_VERSION, kMultipartBoundary, kMultipartBoundary));
-  commands::open_stream(params, connection->conversation().shared_from_this(), [](const commands::ConnectionAnswer& answer) {
-    if (answer.afterwards) answer.afterwards();
-  });
+      fmt::format("HTTP/1.1 200 OK\r\nServer: tweend/{}\r\nContent-Type: {}\r\n"
+                  "Cache-Control: no-store\r\nX-Content-Type-Options: nosniff\r\nConnection: close\r\n\r\n{}",
+                  TWEEND_VERSION, kMultipartType, kMultipartBegin));
+  commands::open_stream(params, connection->conversation().shared_from_this(),
+                        [connection](const commands::ConnectionAnswer& answer) {
+                          if (answer.afterwards) answer.afterwards();
+                          // What it was to show has gone since it was looked at: the answer ends as it would then.
+                          if (!answer.result) connection->close();
+                        });
   // Nothing more is to come from the client: what is read tells that it has gone.
   std::array<char, 512> ignored;
   while (connection->open()) {

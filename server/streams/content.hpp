@@ -31,7 +31,8 @@ class ContentOwner {
 };
 
 /// What the packets of one producer hold, and the way they are made. Functions are called on the stage's strand; the work
-/// itself is done elsewhere and allocates nothing once it runs. Kept alive by its owner until all that was begun is made.
+/// itself is done elsewhere and, but for PNG files, allocates nothing once it runs. Kept alive by its owner until all that was
+/// begun is made.
 class Content {
  public:
   virtual ~Content() = default;

@@ -40,23 +40,27 @@ render::View view_of(const model::Camera& camera, render::Size size) noexcept {
           glm::distance(camera.eye, camera.target)};
 }
 
-model::Camera camera_of(const model::Scene& scene, const std::optional<model::CameraRequest>& own, render::Size size) {
-  const model::Camera& of_scene = scene.settings.camera;
+}  // namespace
+
+model::Camera FrameComposer::camera_of(const model::ScenePtr& scene, const std::optional<model::CameraRequest>& own,
+                                       render::Size size) {
+  const model::Camera& of_scene = scene->settings.camera;
   if (!own) return of_scene;
+  if (own->fit && fitted_ != scene) {
+    fitted_ = scene;
+    visible_ = model::visible_bounds(*scene);
+  }
   const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  const auto visible = own->fit ? model::visible_bounds(scene) : std::nullopt;
-  const auto placed = model::place(of_scene, *own, visible, aspect);
+  const auto placed = model::place(of_scene, *own, visible_, aspect);
   return placed ? *placed : of_scene;
 }
-
-}  // namespace
 
 void FrameComposer::compose(const stage::Show& show, const std::optional<model::CameraRequest>& camera, render::Size size,
                             render::Picture& out) {
   const model::SceneSettings& settings = show.scene->settings;
   const model::Light& light = settings.light;
   out.size = size;
-  out.view = view_of(camera_of(*show.scene, camera, size), size);
+  out.view = view_of(camera_of(show.scene, camera, size), size);
   out.light = {light.position, light.ambient, light.diffuse, light.specular, light.shininess};
   out.background = settings.background;
   out.grid = settings.grid;

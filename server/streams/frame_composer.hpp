@@ -24,7 +24,12 @@ class FrameComposer {
   };
   void add_actor(const stage::ActorShow& show, std::size_t index, render::Picture& out);
 
+  [[nodiscard]] model::Camera camera_of(const model::ScenePtr& scene, const std::optional<model::CameraRequest>& own,
+                                        render::Size size);
+
   std::vector<KnownMesh> meshes_;  ///< by the actor's index
+  model::ScenePtr fitted_;         ///< what `visible_` holds; it takes a look at every keyframe
+  std::optional<model::Bounds> visible_;
 };
 
 }  // namespace tweend::streams

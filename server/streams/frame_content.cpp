@@ -41,8 +41,11 @@ ContentReading FrameContent::read(ClockUs at_us) {
   stage::show_at(*view_, at_us, show_);
   ContentReading reading;
   for (const stage::ActorShow& actor : show_.actors) {
+    if (!actor.actor->settings.visible) continue;
     reading.moving = reading.moving || actor.moving || actor.turning;
-    reading.continuity += actor.continuity;  // each only grows: the sum changes when one does
+    // Mixed, not summed: one player's wrap forwards and another's backwards are two jumps and not none.
+    constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15U;
+    reading.continuity = (reading.continuity ^ actor.continuity) * kOdd;
   }
   const auto named = std::find_if(show_.actors.begin(), show_.actors.end(),
                                   [this](const stage::ActorShow& a) { return a.actor->name == spec_.actor; });
@@ -55,7 +58,6 @@ ContentReading FrameContent::read(ClockUs at_us) {
 }
 
 void FrameContent::begin(NewPacketPtr packet, ClockUs deadline_us) {
-  drawing_ = true;
   drawing_packet_ = std::move(packet);
   drawing_packet_->header.kind = protocol::PacketKind::Frame;
   drawing_packet_->header.encoding = encoding_number(spec_.encoding);
@@ -75,7 +77,6 @@ void FrameContent::drawn(Result<render::PixelsPtr> pixels) noexcept {
 }
 
 void FrameContent::drawn_on_strand() {
-  drawing_ = false;
   waiting_ = true;
   if (!encoding_) encode_next();
 }

@@ -48,7 +48,6 @@ class FrameContent final : public Content, public render::FrameJob, public std::
   stage::SceneViewPtr view_;
 
   // The picture that is being drawn: filled on the strand, handed on from thread to thread, never at two at once.
-  bool drawing_ = false;
   bool waiting_ = false;  ///< drawn, while the one before is still being encoded
   stage::Show show_;
   std::optional<model::CameraRequest> camera_;

@@ -30,7 +30,8 @@ class Hub {
 
   /// The stage has published a view (null: the scene is gone).
   void follow(const std::string& scene, const stage::SceneViewPtr& view);
-  /// Calls `then` once every producer of the scene has delivered a packet that shows `view` or a later one.
+  /// Calls `then` once every producer of the scene has delivered a packet that shows `view` or a later one; those of less than
+  /// five packets a second are not waited for.
   void after_delivery(const stage::SceneViewPtr& view, std::function<void()> then);
   /// Ends all producers, before the strand stops.
   void stop();

@@ -5,8 +5,11 @@
 namespace tweend::streams {
 namespace {
 
-/// What a pool keeps at most: a producer has a latest packet, one in the making and a few on sockets.
+/// What a pool keeps at most: a producer has a latest packet, one in the making and a few on sockets. Large ones are worth less
+/// than the memory.
 constexpr std::size_t kKept = 8;
+constexpr std::size_t kKeptLarge = 1;
+constexpr std::size_t kLargeBytes = std::size_t{8} << 20U;
 
 }  // namespace
 
@@ -46,7 +49,8 @@ NewPacketPtr PacketPool::take() {
 
 void PacketPool::give_back(std::unique_ptr<Packet> packet) {
   const std::lock_guard lock(mutex_);
-  if (free_.size() < kKept) free_.push_back(std::move(packet));
+  const std::size_t most = packet->payload.capacity() > kLargeBytes ? kKeptLarge : kKept;
+  if (free_.size() < most) free_.push_back(std::move(packet));
 }
 
 void intrusive_ptr_add_ref(const Packet* packet) noexcept { packet->references_.fetch_add(1, std::memory_order_relaxed); }

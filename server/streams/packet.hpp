@@ -23,6 +23,7 @@ class Payload {
   /// Less than there was room for: a compressed picture's length is known afterwards.
   void truncate(std::size_t bytes) noexcept { size_ = bytes < size_ ? bytes : size_; }
 
+  [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {memory_.get(), size_}; }
   [[nodiscard]] std::span<const float> floats() const noexcept;
 

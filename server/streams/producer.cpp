@@ -42,7 +42,8 @@ void Producer::retune(StreamKey key) {
   key_ = std::move(key);
   content_->look_from(key_);
   begun_serial_ = 0;  // nothing shows it so yet
-  timer_.cancel();    // which schedules anew
+  last_reading_ = reading_before(steady_now_us());
+  timer_.cancel();  // which schedules anew
   schedule();
 }
 
@@ -86,15 +87,23 @@ void Producer::stop() {
   subscriptions_ = std::make_shared<const Subscriptions>();
 }
 
+double Producer::period_us() const noexcept {
+  constexpr double kLongestUs = 1e15;  // decades: what the clock can still count
+  return std::min(1e6 / key_.rate, kLongestUs);
+}
+
+std::int64_t Producer::reading_before(ClockUs now_us) const noexcept {
+  return static_cast<std::int64_t>(std::floor(static_cast<double>(now_us - start_us_) / period_us()));
+}
+
 void Producer::schedule() {
   if (scheduled_ || busy_ || idle()) return;
   const bool changed = begun_serial_ != view_->serial;
   if (!changed && settled_) return;
   const ClockUs now_us = steady_now_us();
-  constexpr double kLongestUs = 1e15;  // decades: what the clock can still count
-  const double period_us = std::min(1e6 / key_.rate, kLongestUs);
+  const double period_us = this->period_us();
   // The next reading of the grid; a change after a pause, and the very first packet, need no grid to wait for.
-  const auto reading = static_cast<std::int64_t>(std::floor(static_cast<double>(now_us - start_us_) / period_us)) + 1;
+  const std::int64_t reading = reading_before(now_us) + 1;
   const bool at_once = changed && (sequence_ == 0 || static_cast<double>(now_us - last_at_us_) >= period_us);
   const ClockUs at_us = at_once ? now_us : start_us_ + static_cast<ClockUs>(static_cast<double>(reading) * period_us);
   if (sequence_ != 0 && !settled_) {
@@ -151,7 +160,10 @@ void Producer::ready() {
 void Producer::made(Result<NewPacketPtr> packet) {
   const std::shared_ptr<Producer> self = busy_self_;  // may be the last to hold this, once it returns
   if (--in_making_ == 0) busy_self_.reset();
-  if (!packet) return end(packet.error().message);
+  if (!packet) {
+    end(packet.error().message);
+    return environment_.ended();
+  }
   if (newest_ == *packet) newest_.reset();
   protocol::PacketHeader& header = (*packet)->header;
   header.payload_bytes = static_cast<std::uint32_t>((*packet)->payload.bytes().size());

@@ -31,6 +31,7 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
     Mailbox& mailbox;  ///< to the sinks' thread
     Metrics& metrics;
     std::function<void()> progressed;  ///< on the strand, after each delivery
+    std::function<void()> ended;       ///< on the strand, once the producer has found that it can make nothing
   };
   using MakeContent = std::function<std::shared_ptr<Content>(ContentOwner& owner)>;
 
@@ -61,6 +62,9 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
   void made(Result<NewPacketPtr> packet) override;
 
  private:
+  [[nodiscard]] double period_us() const noexcept;
+  /// The number of the grid's last reading that is past.
+  [[nodiscard]] std::int64_t reading_before(ClockUs now_us) const noexcept;
   void schedule();
   void tick(ClockUs at_us);
   void begin(ClockUs at_us);
