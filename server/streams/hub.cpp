@@ -25,7 +25,8 @@ Hub::Producers::iterator Hub::find(const StreamKey& key) {
 }
 
 std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key) {
-  const Producer::Environment environment{stage_.strand(), mailbox_, metrics_, [this] { progressed(); }};
+  const Producer::Environment environment{stage_.strand(), mailbox_, metrics_, [this] { progressed(); },
+                                          [this] { drop_idle(); }};
   return std::make_shared<Producer>(key, ++last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
     if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
       return std::make_shared<FrameContent>(*frames, stage_.strand(), workers_, renderer_, owner);

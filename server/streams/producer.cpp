@@ -151,7 +151,10 @@ void Producer::ready() {
 void Producer::made(Result<NewPacketPtr> packet) {
   const std::shared_ptr<Producer> self = busy_self_;  // may be the last to hold this, once it returns
   if (--in_making_ == 0) busy_self_.reset();
-  if (!packet) return end(packet.error().message);
+  if (!packet) {
+    end(packet.error().message);
+    return environment_.ended();
+  }
   if (newest_ == *packet) newest_.reset();
   protocol::PacketHeader& header = (*packet)->header;
   header.payload_bytes = static_cast<std::uint32_t>((*packet)->payload.bytes().size());
