@@ -1,9 +1,16 @@
 #include "server/app/options.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
+#include "server/app/list_option.hpp"
 #include "server/commands/command_table.hpp"
+#include "server/commands/wire_types.hpp"
 
 namespace tweend::app {
 namespace {
@@ -59,34 +66,80 @@ void add_limit_options(CLI::App& serve, ServeOptions& o) {
   add("--max-texture-pixels", l.texture_pixels, "Pixels of a texture");
 }
 
-void add_offline_options(CLI::App& render, OfflineOptions& o) {
-  render.add_option("ASSET", o.assets, "OBJ files and sequences' folders; several stand side by side")->required();
-  render.add_option("--at", o.times_s, "Media times, seconds")->type_name("T[,T...]")->delimiter(',');
-  render.add_option("-o,--output", o.output, "Where to: .png or .jpg, with %d for the picture's number")
-      ->type_name("FILE")
-      ->capture_default_str();
-  render.add_flag("--sheet", o.sheet, "All pictures in one");
-  render.add_option("--size", o.size, "Of each picture, pixels")->type_name("WxH")->delimiter('x')->capture_default_str();
+/// Whether a float holds it.
+bool is_float(double number) { return std::isfinite(static_cast<float>(number)); }
+
+CLI::Option* add_place(CLI::App& render, const char* name, std::optional<glm::vec3>& to, const char* help) {
+  return add_list(render, name, {.form = "X,Y,Z", .least = 3, .most = 3, .fits = is_float}, help,
+                  [&to](const std::vector<double>& n) { to = glm::vec3(n[0], n[1], n[2]); });
+}
+
+void add_view_options(CLI::App& render, OfflineOptions& o) {
+  CLI::Option* orbit = add_list(render, "--orbit", {.form = "A,E", .least = 2, .most = 2, .fits = is_float},
+                                "Where to look from: degrees from +Z towards +X, and above the ground; all is in view",
+                                [&o](const std::vector<double>& n) {
+                                  o.orbit_deg = {static_cast<float>(n[0]), static_cast<float>(n[1])};
+                                })
+                           ->default_str(fmt::format("{},{}", o.orbit_deg[0], o.orbit_deg[1]));
+  CLI::Option* eye = add_place(render, "--eye", o.eye, "Where to look from, in place of --orbit")->excludes(orbit);
+  add_place(render, "--target", o.target, "What --eye looks at; by default the origin")->needs(eye);
+  add_list(render, "--background",
+           {.form = "R,G,B",
+            .least = 3,
+            .most = 3,
+            .fits = [](double n) { return n >= 0.0 && n <= 1.0; },
+            .each = "a number from 0 to 1"},
+           "sRGB, each 0 to 1", [&o](const std::vector<double>& n) { o.background = glm::vec3(n[0], n[1], n[2]); });
+  add_place(render, "--light", o.light, "Where the light stands");
+  render.add_flag("--grid", o.grid, "Draw the ground");
+}
+
+void add_clip_options(CLI::App& render, OfflineOptions& o) {
   render.add_option("--fps", o.fps, "Frames a second of a sequence")
       ->type_name("N")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(finite_above_zero());
   render.add_flag("--closed", o.closed, "The clip blends from its last keyframe back to the first");
-  render.add_option("--duration", o.duration_s, "Of the clip, seconds")->type_name("S")->check(CLI::PositiveNumber);
-  render.add_option("--interpolation", o.interpolation, "step, linear or catmull_rom; one for each asset, or one for all")
-      ->type_name("MODE[,MODE...]")
-      ->delimiter(',');
+  render.add_option("--duration", o.duration_s, "Of the clip, seconds")->type_name("S")->check(finite_above_zero());
+  const auto read = [&o](const std::string& text) {
+    o.interpolation.clear();
+    for (const std::string_view mode : split(text, ',')) {
+      const auto& names = protocol::EnumNames<animation::Interpolation>::kNames;
+      if (std::find(names.begin(), names.end(), mode) == names.end()) {
+        throw CLI::ValidationError("--interpolation", fmt::format("expected {}; found \"{}\"", fmt::join(names, ", "), mode));
+      }
+      o.interpolation.emplace_back(mode);
+    }
+  };
   render
-      .add_option("--orbit", o.orbit_deg,
-                  "Where to look from: degrees from +Z towards +X, and above the ground; all is in view")
-      ->type_name("A,E")
-      ->delimiter(',')
+      .add_option_function<std::string>("--interpolation", read,
+                                        "step, linear or catmull_rom; one for each asset, or one for all")
+      ->type_name("MODE[,MODE...]");
+}
+
+void add_offline_options(CLI::App& render, OfflineOptions& o) {
+  render.add_option("ASSET", o.assets, "OBJ files and sequences' folders; several stand side by side")->required();
+  add_list(render, "--at", {.form = "T[,T...]"}, "Media times, seconds; a picture for each",
+           [&o](const std::vector<double>& n) { o.times_s = n; })
+      ->default_str("0");
+  render.add_option("-o,--output", o.output, "Where to: .png or .jpg, with %d or %04d for the picture's number")
+      ->type_name("FILE")
       ->capture_default_str();
-  render.add_option("--eye", o.eye, "Where to look from, in place of --orbit")->type_name("X,Y,Z")->delimiter(',')->expected(3);
-  render.add_option("--target", o.target, "What to look at")->type_name("X,Y,Z")->delimiter(',')->expected(3);
-  render.add_option("--background", o.background, "sRGB, each 0 to 1")->type_name("R,G,B")->delimiter(',')->expected(3);
-  render.add_option("--light", o.light, "Where the light stands")->type_name("X,Y,Z")->delimiter(',')->expected(3);
-  render.add_flag("--grid", o.grid, "Draw the ground");
+  render.add_flag("--sheet", o.sheet, "All pictures in one");
+  add_list(render, "--size",
+           {.form = "WxH",
+            .separator = 'x',
+            .least = 2,
+            .most = 2,
+            .fits = [](double n) { return n >= 1.0 && n <= 65535.0 && n == std::floor(n); },
+            .each = "a whole number of pixels"},
+           "Of each picture, pixels",
+           [&o](const std::vector<double>& n) {
+             o.size = {static_cast<std::uint32_t>(n[0]), static_cast<std::uint32_t>(n[1])};
+           })
+      ->default_str(fmt::format("{}x{}", o.size.width, o.size.height));
+  add_clip_options(render, o);
+  add_view_options(render, o);
   render.add_option("--samples", o.render.samples, "Samples a pixel")
       ->type_name("N")
       ->capture_default_str()

@@ -1,11 +1,12 @@
 #include "server/app/render_offline.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <future>
@@ -54,21 +55,31 @@ Result<Source> locate(const std::string& path) {
 /// Where to look from, at all that is shown.
 model::CameraRequest camera_of(const OfflineOptions& o) {
   model::CameraRequest camera;
-  const auto place = [](const std::vector<float>& v) { return glm::vec3(v[0], v[1], v[2]); };
-  if (!o.target.empty()) camera.target = place(o.target);
-  if (!o.eye.empty()) {
-    camera.eye = place(o.eye);
+  if (o.eye) {
+    camera.eye = o.eye;
+    camera.target = o.target;
     return camera;
   }
   constexpr float kRadians = std::numbers::pi_v<float> / 180.0F;
-  camera.orbit = {o.orbit_deg[0] * kRadians, o.orbit_deg[1] * kRadians, {}, {}};
+  const float azimuth = o.orbit_deg[0] * kRadians;
+  const float elevation = o.orbit_deg[1] * kRadians;
+  camera.orbit = {azimuth, elevation, {}, {}};
+  // The upright picture's own up rather than the world's: from right above there is one, too.
+  camera.up =
+      glm::vec3(-std::sin(azimuth) * std::sin(elevation), std::cos(elevation), -std::cos(azimuth) * std::sin(elevation));
   camera.fit = true;
   return camera;
 }
 
-bool is_jpeg(const std::string& name) {
-  const std::string extension = fs::path(name).extension().string();
-  return extension == ".jpg" || extension == ".jpeg";
+enum class FileKind { Png, Jpeg };
+
+Result<FileKind> kind_of(const std::string& name) {
+  std::string extension = fs::path(name).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension == ".png") return FileKind::Png;
+  if (extension == ".jpg" || extension == ".jpeg") return FileKind::Jpeg;
+  return fail(ErrorCode::InvalidParams,
+              fmt::format("expected a name that ends with .png, .jpg or .jpeg after --output, found \"{}\"", name));
 }
 
 Status write_file(const std::string& name, const std::vector<std::byte>& bytes) {
@@ -129,14 +140,15 @@ class Offline {
   Status set_scene(const std::vector<Source>& sources) {
     for (std::size_t i = 0; i < sources.size(); ++i) TWEEND_TRY(add_actor(sources[i], i));
     std::string look;
-    if (!o_.background.empty()) look += fmt::format(R"(,"background":[{}])", fmt::join(o_.background, ","));
+    if (o_.background) look = fmt::format(R"(,"background":{})", json(*o_.background));
     TWEEND_TRY(run_edit(engine_.services(), "scene.update", fmt::format(R"({{"grid":{}{}}})", o_.grid, look)));
-    if (o_.light.empty()) return {};
-    return run_edit(engine_.services(), "light.set", fmt::format(R"({{"position":[{}]}})", fmt::join(o_.light, ",")));
+    if (!o_.light) return {};
+    return run_edit(engine_.services(), "light.set", fmt::format(R"({{"position":{}}})", json(*o_.light)));
   }
 
   Status draw_all() {
-    const render::Size each{o_.size[0], o_.size[1]};
+    const render::Size each = o_.size;
+    TWEEND_TRY(check_camera());
     std::optional<ContactSheet> sheet;
     if (o_.sheet) sheet.emplace(each, o_.times_s.size());
     Report report(o_.times_s.size());
@@ -157,6 +169,15 @@ class Offline {
 
  private:
   [[nodiscard]] model::ScenePtr scene() const { return engine_.services().stage.view()->find("main")->scene; }
+  static std::string json(const glm::vec3& v) { return fmt::format("[{},{},{}]", v.x, v.y, v.z); }
+
+  /// A camera that could show nothing is drawn as the scene's, which a viewer may like and a file's author would not.
+  [[nodiscard]] Status check_camera() const {
+    const model::ScenePtr shown = scene();
+    const float aspect = static_cast<float>(o_.size.width) / static_cast<float>(o_.size.height);
+    TWEEND_TRY(model::place(shown->settings.camera, camera_of(o_), model::visible_bounds(*shown), aspect));
+    return {};
+  }
 
   /// Beside the ones before it.
   Status add_actor(const Source& source, std::size_t index) {
@@ -195,7 +216,8 @@ class Offline {
 
   Status write(const std::string& name, const render::ImageView& image) {
     std::vector<std::byte> file;
-    if (is_jpeg(name)) {
+    TWEEND_ASSIGN(const FileKind kind, kind_of(name));
+    if (kind == FileKind::Jpeg) {
       file.resize(render::JpegEncoder::most_bytes(image.size));
       TWEEND_ASSIGN(const std::size_t bytes, render::JpegEncoder().encode(image, o_.quality, file));
       file.resize(bytes);
@@ -216,6 +238,13 @@ class Offline {
 };
 
 Status run(const OfflineOptions& options) {
+  TWEEND_TRY(numbered_name(options.output, 0, !options.sheet && options.times_s.size() > 1));
+  TWEEND_TRY(kind_of(options.output));
+  if (options.interpolation.size() > options.assets.size()) {
+    return fail(ErrorCode::InvalidParams,
+                fmt::format("expected at most one --interpolation for each of {} asset{}, found {}", options.assets.size(),
+                            options.assets.size() == 1 ? "" : "s", options.interpolation.size()));
+  }
   std::vector<Source> sources;
   std::vector<std::string> folders;
   for (const std::string& path : options.assets) {
@@ -230,7 +259,6 @@ Status run(const OfflineOptions& options) {
     if (std::find(folders.begin(), folders.end(), source.folder) == folders.end()) folders.push_back(source.folder);
     sources.push_back(std::move(source));
   }
-  TWEEND_TRY(numbered_name(options.output, 0, !options.sheet && options.times_s.size() > 1));
   TWEEND_ASSIGN(std::vector<assets::AssetRoot> roots, open_roots(folders));
   Offline offline(options, std::move(roots));
   TWEEND_TRY(offline.start());

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <glm/vec3.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,14 +18,14 @@ struct OfflineOptions {
   std::vector<double> times_s{0.0};
   std::string output = "frame-%04d.png";  ///< `%d`, `%04d`: the picture's number, from 0
   bool sheet = false;                     ///< all pictures in one, left to right, top to bottom
-  std::array<std::uint32_t, 2> size{1280, 720};
+  render::Size size{1280, 720};
   double fps = 24.0;
   bool closed = false;
   double duration_s = 0.0;                       ///< 0: as the keyframes say
   std::array<float, 2> orbit_deg{30.0F, 20.0F};  ///< azimuth from +Z towards +X, elevation; fitted to what is seen
-  std::vector<float> eye, target;                ///< in place of orbit; empty: not given
-  std::vector<float> background;                 ///< sRGB; empty: as a scene's
-  std::vector<float> light;                      ///< its place; empty: as a scene's
+  std::optional<glm::vec3> eye, target;          ///< in place of orbit
+  std::optional<glm::vec3> background;           ///< sRGB; empty: as a scene's
+  std::optional<glm::vec3> light;                ///< its place; empty: as a scene's
   bool grid = false;
   int quality = 90;
   render::RenderOptions render{.samples = 4};  ///< a picture that is kept is worth the wait

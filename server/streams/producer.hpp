@@ -31,7 +31,7 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
     Mailbox& mailbox;  ///< to the sinks' thread
     Metrics& metrics;
     std::function<void()> progressed;  ///< on the strand, after each delivery
-    std::function<void()> ended;       ///< on the strand, once the producer has found that it can make nothing
+    std::function<void()> ended;       ///< on the strand: it can't be made, and the subscribers have been told
   };
   using MakeContent = std::function<std::shared_ptr<Content>(ContentOwner& owner)>;
 
