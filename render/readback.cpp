@@ -8,8 +8,9 @@
 namespace tweend::render {
 namespace {
 
-/// What a pool keeps at most, bytes: a dozen and a half pictures of 1280 × 720, one of 4096 × 4096.
-constexpr std::size_t kKeptBytes = std::size_t{64} << 20U;
+/// What a pool keeps at most, the picture that was read last in any case: eight of 1280 × 720.
+constexpr std::size_t kKept = 16;
+constexpr std::size_t kKeptBytes = std::size_t{32} << 20U;
 
 }  // namespace
 
@@ -53,7 +54,7 @@ void ReadbackPool::trim() {
   const std::lock_guard lock(mutex_);
   std::size_t kept = 0;
   for (const auto& pixels : free_) kept += pixels->capacity_;
-  while (kept > kKeptBytes) {
+  while (free_.size() > 1 && (free_.size() > kKept || kept > kKeptBytes)) {
     kept -= free_.front()->capacity_;
     surplus.push_back(std::move(free_.front()));
     free_.erase(free_.begin());

@@ -10,8 +10,9 @@
 namespace tweend::render {
 namespace {
 
-/// What a pool keeps at most, bytes: eight targets of 1280 × 720, one of 4096 × 4096.
-constexpr std::size_t kKeptBytes = std::size_t{128} << 20U;
+/// What a pool keeps at most, the target that was used last in any case: four of 1280 × 720.
+constexpr std::size_t kKept = 8;
+constexpr std::size_t kKeptBytes = std::size_t{32} << 20U;
 
 }  // namespace
 
@@ -83,7 +84,7 @@ void RenderTargetPool::give_back(RenderTargetPtr target) {
   free_.push_back(std::move(target));
   std::size_t kept = 0;
   for (const RenderTargetPtr& free : free_) kept += free->bytes();
-  while (kept > kKeptBytes) {
+  while (free_.size() > 1 && (free_.size() > kKept || kept > kKeptBytes)) {
     kept -= free_.front()->bytes();
     free_.erase(free_.begin());
   }

@@ -4,13 +4,17 @@
 #include <vector>
 
 #include "render/image_view.hpp"
+#include "server/base/result.hpp"
 
 namespace tweend::app {
 
 /// Pictures of one size in one, left to right and top to bottom, a little apart. Bottom row first, as ImageView has it.
 class ContactSheet {
  public:
-  /// @param count  how many pictures there will be, at least 1
+  /// @return Limit where the whole would be larger than 16384 pixels a side, or 256 million of them
+  [[nodiscard]] static Status check(render::Size each, std::size_t count);
+
+  /// @param count  how many pictures there will be, at least 1; as check() says
   ContactSheet(render::Size each, std::size_t count);
 
   /// What the whole takes.

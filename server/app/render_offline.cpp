@@ -150,7 +150,10 @@ class Offline {
     const render::Size each = o_.size;
     TWEEND_TRY(check_camera());
     std::optional<ContactSheet> sheet;
-    if (o_.sheet) sheet.emplace(each, o_.times_s.size());
+    if (o_.sheet) {
+      TWEEND_TRY(ContactSheet::check(each, o_.times_s.size()));
+      sheet.emplace(each, o_.times_s.size());
+    }
     Report report(o_.times_s.size());
     for (std::size_t i = 0; i < o_.times_s.size(); ++i) {
       TWEEND_ASSIGN(const streams::DrawnStill drawn, draw(o_.times_s[i], each));

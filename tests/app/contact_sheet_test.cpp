@@ -83,5 +83,14 @@ INSTANTIATE_TEST_SUITE_P(Of, AContactSheet,
                                          Grid{7, 3, 3}, Grid{9, 3, 3}, Grid{10, 4, 3}),
                          [](const testing::TestParamInfo<Grid>& grid) { return std::to_string(grid.param.count); });
 
+TEST(ContactSheet, IsRefusedWhereItWouldBeLargerThanAnybodyCanLookAt) {
+  EXPECT_TRUE(ContactSheet::check({1280, 720}, 100));
+  const Status wide = ContactSheet::check({16'384, 16'384}, 64);
+  ASSERT_FALSE(wide);
+  EXPECT_EQ(wide.error().code, ErrorCode::Limit);
+  EXPECT_FALSE(ContactSheet::check({4'294'967'295U, 1}, 4'000'000'000U));
+  EXPECT_FALSE(ContactSheet::check({1, 4'294'967'295U}, 2));
+}
+
 }  // namespace
 }  // namespace tweend::app

@@ -233,11 +233,34 @@ TEST_F(OutboxTest, PacketsAreTheSameBytesInBothFramings) {
   EXPECT_EQ(drain(web), expected);
 }
 
+// Who leaves a producer and comes back to it is given its latest packet: perhaps one that it has had.
+TEST_F(OutboxTest, SendsNoPacketTwice) {
+  const auto pool = std::make_shared<PacketPool>();
+  const auto packet = [&pool](std::uint64_t source, std::uint32_t sequence) {
+    const auto made = pool->take();
+    made->source = source;
+    made->header.sequence = sequence;
+    return made;
+  };
+  web.offer(1, packet(7, 3));
+  EXPECT_FALSE(drain(web).empty());
+  web.offer(1, packet(7, 3));
+  EXPECT_TRUE(drain(web).empty());
+  web.offer(1, packet(7, 4));
+  EXPECT_FALSE(drain(web).empty());
+  web.offer(1, packet(8, 0));
+  EXPECT_FALSE(drain(web).empty()) << "another producer's";
+  web.offer(1, packet(7, 4));
+  EXPECT_FALSE(drain(web).empty()) << "it has seen something else since";
+}
+
 TEST_F(OutboxTest, LargePacketsHaveTheLengthsOfTheStandardToo) {
   const auto pool = std::make_shared<PacketPool>();
   // 40 + 4 n bytes: the last of 7 bits, the first and last of 16, the first of 64.
+  std::uint32_t sequence = 0;
   for (const std::size_t floats : {20U, 21U, 22U, 16373U, 16374U, 16375U}) {
     const auto packet = pool->take();
+    packet->header.sequence = sequence++;
     packet->payload.resize_floats(floats);
     packet->source = 1;
     packet->header.payload_bytes = static_cast<std::uint32_t>(4 * floats);
