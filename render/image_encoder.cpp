@@ -71,6 +71,13 @@ int encode_rows(spng_ctx* context, const ImageView& image) {
 
 }  // namespace
 
+Result<std::vector<std::byte>> encode_jpeg(const ImageView& image, int quality) {
+  std::vector<std::byte> file(JpegEncoder::most_bytes(image.size));
+  TWEEND_ASSIGN(const std::size_t bytes, JpegEncoder().encode(image, quality, file));
+  file.resize(bytes);
+  return file;
+}
+
 Result<std::vector<std::byte>> encode_png(const ImageView& image) {
   const std::unique_ptr<spng_ctx, SpngDeleter> context(spng_ctx_new(SPNG_CTX_ENCODER));
   const auto failed = [&](int error) {

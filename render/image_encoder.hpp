@@ -32,6 +32,9 @@ class JpegEncoder {
   std::unique_ptr<Impl> impl_;
 };
 
+/// A whole JPEG file, for a picture that is made once. Any thread. @return as JpegEncoder::encode
+[[nodiscard]] Result<std::vector<std::byte>> encode_jpeg(const ImageView& image, int quality);
+
 /// Writes a PNG file (8 bits, RGB: the pictures are opaque; tagged sRGB) by libspng. Any thread.
 /// @return Internal with the library's reason
 [[nodiscard]] Result<std::vector<std::byte>> encode_png(const ImageView& image);

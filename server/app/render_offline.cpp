@@ -218,15 +218,9 @@ class Offline {
   }
 
   Status write(const std::string& name, const render::ImageView& image) {
-    std::vector<std::byte> file;
     TWEEND_ASSIGN(const FileKind kind, kind_of(name));
-    if (kind == FileKind::Jpeg) {
-      file.resize(render::JpegEncoder::most_bytes(image.size));
-      TWEEND_ASSIGN(const std::size_t bytes, render::JpegEncoder().encode(image, o_.quality, file));
-      file.resize(bytes);
-    } else {
-      TWEEND_ASSIGN(file, render::encode_png(image));
-    }
+    TWEEND_ASSIGN(const std::vector<std::byte> file,
+                  kind == FileKind::Jpeg ? render::encode_jpeg(image, o_.quality) : render::encode_png(image));
     TWEEND_TRY(write_file(name, file));
     std::cout << fmt::format("{}: {} x {}, {:.1f} kB\n", name, image.size.width, image.size.height,
                              static_cast<double>(file.size()) / 1000.0);

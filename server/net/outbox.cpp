@@ -118,9 +118,10 @@ void Outbox::push_raw(std::string bytes) {
 void Outbox::offer(std::uint32_t stream, const streams::PacketPtr& packet) {
   // Who leaves a producer and comes back to it is given its latest packet, which it may have had.
   const auto had = numbers_.find(stream);
-  if (had != numbers_.end() && had->second.source == packet->source &&
-      packet->header.sequence + had->second.base <= had->second.last) {
-    return;
+  if (had != numbers_.end() && had->second.source == packet->source) {
+    // The difference, not the numbers: they start again from 0 after 2^32 packets.
+    const auto ahead = static_cast<std::int32_t>(packet->header.sequence + had->second.base - had->second.last);
+    if (ahead <= 0) return;
   }
   const auto waiting =
       std::find_if(data_.begin(), data_.end(), [stream](const Item& i) { return i.packet && i.stream == stream; });

@@ -42,15 +42,9 @@ class StillJob final : public render::FrameJob, public std::enable_shared_from_t
 
 Result<Still> encode(const DrawnStill& drawn, ImageFormat format, int quality) {
   const render::ImageView image = drawn.pixels->view();
-  Still still{drawn.time_s, {}};
-  if (format == ImageFormat::Png) {
-    TWEEND_ASSIGN(still.file, render::encode_png(image));
-    return still;
-  }
-  still.file.resize(render::JpegEncoder::most_bytes(image.size));
-  TWEEND_ASSIGN(const std::size_t bytes, render::JpegEncoder().encode(image, quality, still.file));
-  still.file.resize(bytes);
-  return still;
+  TWEEND_ASSIGN(std::vector<std::byte> file,
+                format == ImageFormat::Png ? render::encode_png(image) : render::encode_jpeg(image, quality));
+  return Still{drawn.time_s, std::move(file)};
 }
 
 }  // namespace

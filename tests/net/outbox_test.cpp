@@ -254,6 +254,18 @@ TEST_F(OutboxTest, SendsNoPacketTwice) {
   EXPECT_FALSE(drain(web).empty()) << "it has seen something else since";
 }
 
+// After months of packets the numbers start again; the stream goes on.
+TEST_F(OutboxTest, GoesOnWhereTheSequenceStartsAgain) {
+  const auto pool = std::make_shared<PacketPool>();
+  for (const std::uint32_t sequence : {0xFFFFFFFEU, 0xFFFFFFFFU, 0U, 1U}) {
+    const auto packet = pool->take();
+    packet->source = 1;
+    packet->header.sequence = sequence;
+    web.offer(1, packet);
+    EXPECT_FALSE(drain(web).empty()) << sequence;
+  }
+}
+
 TEST_F(OutboxTest, LargePacketsHaveTheLengthsOfTheStandardToo) {
   const auto pool = std::make_shared<PacketPool>();
   // 40 + 4 n bytes: the last of 7 bits, the first and last of 16, the first of 64.
