@@ -5,7 +5,7 @@
 namespace tweend::animation {
 
 /// How values between two keyframes are made; docs/PROTOCOL.md, section 4.
-enum class Interpolation : std::uint8_t { Step, Linear, CatmullRom };
+enum class Interpolation : std::uint8_t { Step, Linear, CatmullRom, Cubic };
 
 /// A CSS `cubic-bezier(x1, y1, x2, y2)`: the curve from (0, 0) to (1, 1) with these two control points.
 /// x1 and x2 lie in [0, 1], so that x grows along the curve; y may leave [0, 1] (overshoot).

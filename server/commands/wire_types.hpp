@@ -30,7 +30,7 @@ struct EnumNames<commands::WireClipType> {
 };
 template <>
 struct EnumNames<animation::Interpolation> {
-  static constexpr std::array<std::string_view, 3> kNames{"step", "linear", "catmull_rom"};
+  static constexpr std::array<std::string_view, 4> kNames{"step", "linear", "catmull_rom", "cubic"};
 };
 template <>
 struct EnumNames<stage::Loop> {

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "server/animation/joint_pose.hpp"
+
+namespace tweend::animation {
+
+/// The rows of a pose: one float of every joint each.
+enum class PoseRow : std::uint8_t { Tx, Ty, Tz, Rx, Ry, Rz, Rw, Sx, Sy, Sz };
+inline constexpr std::size_t kPoseRows = 10;
+
+/// Rows are padded to whole vectors of this many joints; the padding holds identity poses.
+inline constexpr std::size_t kPoseLanes = 16;
+
+/// Local transforms of all joints of a skeleton, as a structure of arrays, and its morph weights. Joints stand in the order of
+/// evaluation (parents first). Owned by one thread at a time; reused from frame to frame, so that only growing allocates.
+class Pose {
+ public:
+  /// All joints at identity, all weights 0. Keeps its memory.
+  void reset(std::size_t joint_count, std::size_t weight_count);
+
+  [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
+  /// Floats in a row, a multiple of kPoseLanes.
+  [[nodiscard]] std::size_t stride() const noexcept { return stride_; }
+  /// One float of every joint, padded; 64-byte aligned.
+  [[nodiscard]] std::span<float> row(PoseRow row) noexcept {
+    return {rows() + static_cast<std::size_t>(row) * stride_, stride_};
+  }
+  [[nodiscard]] std::span<const float> row(PoseRow row) const noexcept {
+    return {rows() + static_cast<std::size_t>(row) * stride_, stride_};
+  }
+  /// Morph target weights.
+  [[nodiscard]] std::span<float> weights() noexcept { return weights_; }
+  [[nodiscard]] std::span<const float> weights() const noexcept { return weights_; }
+
+  /// Precondition: joint < joint_count().
+  [[nodiscard]] JointPose joint(std::size_t joint) const noexcept;
+  void set_joint(std::size_t joint, const JointPose& pose) noexcept;
+
+ private:
+  [[nodiscard]] float* rows() noexcept { return storage_.data() + offset_; }
+  [[nodiscard]] const float* rows() const noexcept { return storage_.data() + offset_; }
+
+  std::size_t joint_count_ = 0;
+  std::size_t stride_ = 0;
+  std::size_t offset_ = 0;  ///< to the first aligned float
+  std::vector<float> storage_;
+  std::vector<float> weights_;
+};
+
+}  // namespace tweend::animation
