@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "tests/animation/every_target.hpp"
 #include "tests/animation/random_tracks.hpp"
 #include "tests/animation/reference_track.hpp"
 
@@ -70,7 +71,10 @@ void for_many(const std::function<void(std::size_t joints, float weight, const s
   }
 }
 
-TEST(BlendPoses, LerpsAndSlerpsEachJointByItsWeight) {
+class BlendPoses : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(BlendPoses);
+
+TEST_P(BlendPoses, LerpsAndSlerpsEachJointByItsWeight) {
   for_many([](std::size_t joints, float weight, const std::vector<float>& mask) {
     const Pose from = random_pose(1, joints), to = random_pose(2, joints);
     Pose found = from;
@@ -90,7 +94,7 @@ TEST(BlendPoses, LerpsAndSlerpsEachJointByItsWeight) {
   });
 }
 
-TEST(BlendPoses, Weights0And1AreExact) {
+TEST_P(BlendPoses, Weights0And1AreExact) {
   for (const std::size_t joints : {1U, 16U, 67U}) {
     const Pose from = random_pose(3, joints), to = random_pose(4, joints);
     Pose found = from;
@@ -107,7 +111,10 @@ TEST(BlendPoses, Weights0And1AreExact) {
   }
 }
 
-TEST(AddPose, AddsTheWeightedDifferenceToTheRest) {
+class AddPose : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(AddPose);
+
+TEST_P(AddPose, AddsTheWeightedDifferenceToTheRest) {
   for_many([](std::size_t joints, float weight, const std::vector<float>& mask) {
     const Pose base = random_pose(5, joints), layer = random_pose(6, joints), rest = random_pose(7, joints);
     Pose found = base;
@@ -131,7 +138,7 @@ TEST(AddPose, AddsTheWeightedDifferenceToTheRest) {
   });
 }
 
-TEST(AddPose, Weight0IsExactAndAScaleOf0AddsNothing) {
+TEST_P(AddPose, Weight0IsExactAndAScaleOf0AddsNothing) {
   const Pose base = random_pose(8, 20), layer = random_pose(9, 20);
   Pose rest = layer;
   Pose found = base;

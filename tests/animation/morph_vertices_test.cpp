@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "tests/animation/every_target.hpp"
 #include "tests/animation/random_tracks.hpp"
 
 namespace tweend::animation {
@@ -52,7 +53,10 @@ struct Morph {
   std::vector<float> weights;
 };
 
-TEST(MorphVertices, AddsTheWeightedDisplacementsOfEveryRun) {
+class MorphVertices : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(MorphVertices);
+
+TEST_P(MorphVertices, AddsTheWeightedDisplacementsOfEveryRun) {
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     RandomTracks random(seed);
     const std::size_t vertices = 1 + random.below(seed % 4 == 0 ? 900 : 40);
@@ -81,7 +85,7 @@ TEST(MorphVertices, AddsTheWeightedDisplacementsOfEveryRun) {
   }
 }
 
-TEST(MorphVertices, WithoutWeightsOrTargetsChangesNothing) {
+TEST_P(MorphVertices, WithoutWeightsOrTargetsChangesNothing) {
   const Morph morph(1, 20, 5);
   const std::vector<float> base(60, 0.7F);
   std::vector<float> positions = base, normals = base;
@@ -91,7 +95,7 @@ TEST(MorphVertices, WithoutWeightsOrTargetsChangesNothing) {
   EXPECT_EQ(normals, base);
 }
 
-TEST(MorphVertices, ANormalThatVanishesStaysAsItWas) {
+TEST_P(MorphVertices, ANormalThatVanishesStaysAsItWas) {
   const std::vector<float> base{0, 1, 0}, away{0, -1, 0};
   std::vector<float> normals = base;
   const std::vector<MorphTargetView> targets{{0, 1, {{}, away, {}}}};

@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 #include <vector>
 
+#include "tests/animation/every_target.hpp"
 #include "tests/animation/random_tracks.hpp"
 
 namespace tweend::animation {
@@ -62,7 +63,10 @@ struct Output {
 
 glm::dvec3 at(const std::vector<float>& stream, std::size_t v) { return {stream[3 * v], stream[3 * v + 1], stream[3 * v + 2]}; }
 
-TEST(SkinVertices, IsTheWeightedSumOfMatricesForAnyNumberOfVertices) {
+class SkinVertices : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(SkinVertices);
+
+TEST_P(SkinVertices, IsTheWeightedSumOfMatricesForAnyNumberOfVertices) {
   for (const std::size_t influences : {1U, 4U, 8U}) {
     for (std::size_t vertices = 1; vertices < 70; ++vertices) {
       const Skinned skin(static_cast<std::uint32_t>(vertices), vertices, influences);
@@ -82,7 +86,7 @@ TEST(SkinVertices, IsTheWeightedSumOfMatricesForAnyNumberOfVertices) {
   }
 }
 
-TEST(SkinVertices, MakesOnlyTheStreamsAskedForAndNothingBesides) {
+TEST_P(SkinVertices, MakesOnlyTheStreamsAskedForAndNothingBesides) {
   for (int streams = 0; streams < 8; ++streams) {
     Skinned skin(5, 37, 4);
     Output out(38);  // one more, which stays
@@ -99,7 +103,7 @@ TEST(SkinVertices, MakesOnlyTheStreamsAskedForAndNothingBesides) {
   }
 }
 
-TEST(SkinVertices, TheSameVertexComesOutTheSameAnywhere) {
+TEST_P(SkinVertices, TheSameVertexComesOutTheSameAnywhere) {
   for (const std::size_t influences : {1U, 4U, 8U}) {
     Skinned skin(6, 1, influences);
     for (int i = 1; i < 50; ++i) {
@@ -119,7 +123,7 @@ TEST(SkinVertices, TheSameVertexComesOutTheSameAnywhere) {
   }
 }
 
-TEST(SkinVertices, WhereNothingIsLeftDirectionsStayAndFlatOnesKeepTheirSide) {
+TEST_P(SkinVertices, WhereNothingIsLeftDirectionsStayAndFlatOnesKeepTheirSide) {
   const std::vector<Affine> palette{
       {{glm::vec4(0), glm::vec4(0), glm::vec4(0)}},                              // all to a point
       {{glm::vec4(1, 0, 0, 0), glm::vec4(0, 1, 0, 0), glm::vec4(0)}},            // flat
@@ -136,7 +140,7 @@ TEST(SkinVertices, WhereNothingIsLeftDirectionsStayAndFlatOnesKeepTheirSide) {
   EXPECT_LE(glm::length(at(out.normals, 2) - glm::dvec3(-0.6, 0.8, 0)), 1e-6);
 }
 
-TEST(SkinVertices, RefusesLengthsThatDifferAndOddNumbersOfInfluences) {
+TEST_P(SkinVertices, RefusesLengthsThatDifferAndOddNumbersOfInfluences) {
   Skinned skin(7, 10, 4);
   Output out(10);
   const auto refused = [&](SkinInfluences influences, VertexAttributes in, VertexTarget target) {
