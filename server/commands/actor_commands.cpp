@@ -99,23 +99,21 @@ struct ActorRemoveParams : EditTarget {
   }
 };
 
-/// What an asset or a mesh parameter comes to: worked out once, on a worker.
-struct Source {
-  std::string name;
-  model::MeshPtr mesh;
-  model::VertexKeyPtr rest;
-  std::vector<assets::ImportedKey> keys;
-};
-
-Result<Source> import_asset(const std::string& name, const Services& services) {
-  auto imported = services.assets.import(name);
+Result<model::ImportedModel> import_asset(const ActorAddParams& p, const Services& services) {
+  auto imported = services.assets.import(*p.asset, {p.fps.value_or(24.0)});
   if (!imported) return fail(imported.error().code, imported.error().message, "params.asset");
   for (const std::string& warning : imported->warnings) log::warn(warning);
-  model::VertexKeyPtr rest = imported->keys.front().vertices;
-  return Source{std::move(imported->source), std::move(imported->mesh), std::move(rest), std::move(imported->keys)};
+  return imported;
 }
 
-Result<Source> make_mesh(const MeshParams& p, const Services& services) {
+/// One clip without keyframes, for what brings none.
+std::vector<model::Clip> empty_clip() {
+  model::Clip clip;
+  clip.name = "default";
+  return {std::move(clip)};
+}
+
+Result<model::ImportedModel> make_mesh(const MeshParams& p, const Services& services) {
   const std::size_t vertices = p.positions.size() / 3;
   if (p.positions.size() % 3 != 0) {
     return fail(ErrorCode::InvalidParams, fmt::format("expected three numbers a vertex, found {} numbers", p.positions.size()),
@@ -132,20 +130,28 @@ Result<Source> make_mesh(const MeshParams& p, const Services& services) {
   auto rest =
       model::VertexKey::make(**mesh, p.positions, p.normals ? std::span<const float>(*p.normals) : std::span<const float>());
   if (!rest) return fail(rest.error().code, rest.error().message, "params.mesh." + rest.error().path);
-  return Source{"mesh", *mesh, *rest, {}};
+  auto model = std::make_shared<const model::Model>(model::Model{*mesh, *rest, {}, {}, {}});
+  return model::ImportedModel{"mesh", std::move(model), empty_clip(), {}};
 }
 
-Result<model::Clip> make_clip(const ActorAddParams& p, const Source& source, stage::Transaction& transaction) {
-  model::Clip clip;
-  clip.name = "default";
-  clip.settings = {p.closed.value_or(false), p.duration, {}};
-  const double fps = p.fps.value_or(24.0);
-  for (const assets::ImportedKey& key : source.keys) {
-    clip.times_s.push_back(key.frame / fps);
-    clip.keyframes.push_back({transaction.new_keyframe_id(), {}, {}, key.vertices});
+/// The actor's clips, with ids for their keyframes and what the request says of them.
+Result<std::vector<model::ClipPtr>> make_clips(const ActorAddParams& p, const model::ImportedModel& source,
+                                               EditContext& context) {
+  std::vector<model::ClipPtr> clips;
+  for (const model::Clip& from : source.clips) {
+    const std::size_t most = context.services.limits.keyframes_per_clip;
+    if (from.keyframes.size() > most) {
+      return fail(ErrorCode::Limit, fmt::format("expected at most {} keyframes in a clip, found {} in \"{}\"", most,
+                                                from.keyframes.size(), from.name), "params.asset");
+    }
+    model::Clip clip = from;
+    clip.settings.closed = p.closed.value_or(clip.settings.closed);
+    if (p.duration) clip.settings.duration_s = p.duration;
+    for (model::Keyframe& keyframe : clip.keyframes) keyframe.id = context.transaction.new_keyframe_id();
+    TWEEND_TRY(check_duration(clip));
+    clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
   }
-  TWEEND_TRY(check_duration(clip));
-  return clip;
+  return clips;
 }
 
 Result<ActorAddResult> add_actor(const ActorAddParams& p, EditContext& context) {
@@ -156,26 +162,19 @@ Result<ActorAddResult> add_actor(const ActorAddParams& p, EditContext& context) 
   if (const std::size_t most = context.services.limits.actors_per_scene; context.scene().actors.size() >= most) {
     return fail(ErrorCode::Limit, fmt::format("expected at most {} actors in a scene, found as many; remove one first", most));
   }
-  const Result<Source>& source = context.once(
-      "source", [&] { return p.asset ? import_asset(*p.asset, context.services) : make_mesh(*p.mesh, context.services); });
+  const Result<model::ImportedModel>& source = context.once(
+      "source", [&] { return p.asset ? import_asset(p, context.services) : make_mesh(*p.mesh, context.services); });
   if (!source) return source.error();
-  if (source->keys.size() > context.services.limits.keyframes_per_clip) {
-    return fail(ErrorCode::Limit,
-                fmt::format("expected at most {} keyframes in a clip, found {}", context.services.limits.keyframes_per_clip,
-                            source->keys.size()),
-                "params.asset");
-  }
   model::Actor actor;
   actor.name = p.actor.text;
-  actor.source = source->name;
-  actor.mesh = source->mesh;
-  actor.rest = source->rest;
+  actor.source = source->source;
+  actor.model = source->model;
   actor.settings.interpolation = p.interpolation;
   if (p.transform) p.transform->apply_to(actor.settings.transform);
-  TWEEND_ASSIGN(model::Clip clip, make_clip(p, *source, context.transaction));
-  actor.clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
+  TWEEND_ASSIGN(actor.clips, make_clips(p, *source, context));
 
-  ActorAddResult result{actor.name, {"default"}, actor.mesh->vertex_count(), 0, 0};
+  ActorAddResult result{actor.name, {}, actor.model->vertex_count(), actor.model->joint_count(), 0};
+  for (const model::ClipPtr& clip : actor.clips) result.clips.push_back(clip->name);
   context.transaction.apply(stage::SetActor{actor.name, std::make_shared<const model::Actor>(std::move(actor))});
   context.transaction.about({result.actor, {}, {}});
   return result;

@@ -122,7 +122,7 @@ Result<ClipCreateResult> create_clip(const ClipCreateParams& p, EditContext& con
   model::Clip clip;
   clip.name = p.clip.text;
   clip.settings = {p.closed.value_or(false), p.duration, p.interpolation};
-  if (p.type) clip.declared_type = model::ClipType::Vertex;
+  if (p.type) clip.declared_type = *p.type == WireClipType::Vertex ? model::ClipType::Vertex : model::ClipType::Skeletal;
   if (p.keys && !p.keys->empty()) {
     if (p.keys->size() > limits.keyframes_per_clip) {
       return fail(ErrorCode::Limit,

@@ -4,6 +4,7 @@
 
 #include "server/commands/command_table.hpp"
 #include "server/commands/edit_helpers.hpp"
+#include "server/model/evaluate.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -206,21 +207,21 @@ Result<model::VertexKeyPtr> given_vertices(const VerticesParams& p, const model:
 }
 
 Result<model::VertexKeyPtr> captured_vertices(const model::Actor& actor, const stage::ActorShow& show) {
-  std::vector<float> block(6 * actor.mesh->vertex_count());
+  std::vector<float> block(6 * actor.model->vertex_count());
   const std::span<float> positions = std::span(block).first(block.size() / 2);
   const std::span<float> normals = std::span(block).subspan(block.size() / 2);
-  TWEEND_TRY(model::sample_vertices(*show.actor, *show.clip, show.time_s, {positions, normals, {}}));
-  return model::VertexKey::make(*actor.mesh, positions, normals);
+  TWEEND_TRY(model::Evaluator().vertices(*show.actor, show.shown, {positions, normals, {}}));
+  return model::VertexKey::make(*actor.model->mesh, positions, normals);
 }
 
 /// What the keyframe shall hold; worked out once for the same mesh and, captured, for the same picture.
 Result<model::VertexKeyPtr> make_vertices(const KeyframeContent& p, const model::ActorPtr& actor, EditContext& context) {
-  const std::string mesh = to_string(actor->mesh->hash());
-  if (p.vertices) return context.once("vertices " + mesh, [&] { return given_vertices(*p.vertices, *actor->mesh); });
+  const std::string mesh = to_string(actor->model->mesh->hash());
+  if (p.vertices) return context.once("vertices " + mesh, [&] { return given_vertices(*p.vertices, *actor->model->mesh); });
   const stage::Player* player = context.view ? context.view->find_player(actor->name) : nullptr;
   // An actor whose creation is not published yet has no player: it shows its first clip from the start.
   const stage::ActorShow show = player != nullptr ? stage::show_actor(actor, *player, context.now_us)
-                                                  : stage::ActorShow{actor, actor->clips.front(), 0.0, 0.0, false, 0};
+                                                  : stage::ActorShow{actor, actor->clips.front(), 0.0, model::shown_clip(actor->clips.front(), 0.0)};
   const std::string picture = fmt::format("capture {} {} {} {}", mesh, fmt::ptr(actor.get()), show.clip->name, show.time_s);
   return context.once(picture, [&] { return captured_vertices(*actor, show); });
 }

@@ -175,6 +175,7 @@ ClipState clip_state(const model::Clip& clip) {
   ClipState state{clip.name,         std::optional<WireClipType>(), clip.keyframes.size(),
                   clip.duration_s(), clip.settings.closed,          clip.settings.interpolation};
   if (clip.type() == model::ClipType::Vertex) state.type = WireClipType::Vertex;
+  if (clip.type() == model::ClipType::Skeletal) state.type = WireClipType::Skeletal;
   return state;
 }
 
@@ -190,8 +191,8 @@ ActorState actor_state(const stage::SceneView& view, std::size_t index, ClockUs 
                    player_state(view, index, now_us),
                    {},
                    {},
-                   actor.mesh->vertex_count(),
-                   actor.mesh->triangle_count()};
+                   actor.model->vertex_count(),
+                   actor.model->mesh ? actor.model->mesh->triangle_count() : 0};
   for (const model::ClipPtr& clip : actor.clips) state.clips.push_back(clip_state(*clip));
   return state;
 }

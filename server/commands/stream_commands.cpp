@@ -7,6 +7,7 @@
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
 #include "server/commands/stream_types.hpp"
+#include "server/model/actor_bounds.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -73,25 +74,14 @@ struct CloseParams {
   static void describe(FieldList<CloseParams>& f) { f.add<&CloseParams::stream>("stream", "Its number."); }
 };
 
-BoundsState bounds_of(const model::Actor& actor, const model::Clip& clip) {
-  model::Bounds all = clip.keyframes.empty() ? actor.rest->bounds() : clip.keyframes.front().vertices->bounds();
-  for (const model::Keyframe& k : clip.keyframes) {
-    const model::Bounds& b = k.vertices->bounds();
-    for (int i = 0; i < 3; ++i) {
-      all.min[i] = std::min(all.min[i], b.min[i]);
-      all.max[i] = std::max(all.max[i], b.max[i]);
-    }
-  }
-  return {all.min, all.max};
-}
-
-StreamLayout vertices_layout(const model::Actor& actor, const model::Clip& clip) {
-  const model::Mesh& mesh = *actor.mesh;
+StreamLayout vertices_layout(const model::Actor& actor, const model::ClipPtr& clip) {
+  const model::Mesh& mesh = *actor.model->mesh;
   StreamLayout layout;
   layout.vertices = mesh.vertex_count();
   layout.indices = protocol::Base64Indices{{mesh.indices().begin(), mesh.indices().end()}};
   if (!mesh.texcoords().empty()) layout.uvs = protocol::Base64Floats{{mesh.texcoords().begin(), mesh.texcoords().end()}};
-  layout.bounds = bounds_of(actor, clip);
+  const model::Bounds bounds = model::clip_bounds(actor, clip);
+  layout.bounds = BoundsState{bounds.min, bounds.max};
   return layout;
 }
 
@@ -110,7 +100,7 @@ std::string open_result(std::uint32_t stream, const streams::StreamKey& key, con
     return protocol::encode(OpenResult{stream, frames_layout(*frames)});
   }
   const model::ActorPtr actor = view.scene->find_actor(std::get<streams::VerticesSpec>(key.what).actor);
-  return protocol::encode(OpenResult{stream, vertices_layout(*actor, *stage::clip_of(*actor, *view.find_player(actor->name)))});
+  return protocol::encode(OpenResult{stream, vertices_layout(*actor, stage::clip_of(*actor, *view.find_player(actor->name)))});
 }
 
 void subscribe_later(const std::shared_ptr<Conversation>& conversation, std::uint32_t stream) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "server/commands/command_table.hpp"
+#include "server/model/evaluate.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -44,13 +45,16 @@ Result<SampleResult> sample(const SampleParams& p, const QueryContext& context) 
   if (!view) return no_such_scene(scene_or_main(p.scene));
   TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*view->scene, p.actor));
   TWEEND_ASSIGN(const model::ClipPtr clip, find_clip(*actor, p.clip, view));
-  // Without a time: what the player shows now; of another clip than it is on, that clip at the same time.
-  const double wanted_s = p.time ? *p.time : stage::show_actor(actor, *view->find_player(actor->name), context.now_us).time_s;
-  const std::size_t count = actor->mesh->vertex_count();
-  SampleResult result{
-      std::clamp(wanted_s, 0.0, clip->duration_s()), count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
-  TWEEND_TRY(model::sample_vertices(*actor, *clip, result.time, {result.positions, result.normals, {}}));
-  if (p.indices) result.indices = std::vector<std::uint32_t>(actor->mesh->indices().begin(), actor->mesh->indices().end());
+  if (!actor->model->mesh) return no_mesh(*actor);
+  const stage::ActorShow now = stage::show_actor(actor, *view->find_player(actor->name), context.now_us);
+  // Without a time: what is shown now; of another clip than the player is on, that clip at the same time.
+  const bool as_shown = !p.time && clip == now.clip;
+  const double time_s = std::clamp(p.time.value_or(now.time_s), 0.0, clip->duration_s());
+  const std::size_t count = actor->model->vertex_count();
+  SampleResult result{time_s, count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
+  const model::Shown shown = as_shown ? now.shown : model::shown_clip(clip, time_s);
+  TWEEND_TRY(model::Evaluator().vertices(*actor, shown, {result.positions, result.normals, {}}));
+  if (p.indices) result.indices = std::vector<std::uint32_t>(actor->model->mesh->indices().begin(), actor->model->mesh->indices().end());
   return result;
 }
 

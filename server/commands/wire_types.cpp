@@ -31,6 +31,11 @@ Error no_such_actor(const model::Scene& scene, const std::string& actor) {
               "params.actor");
 }
 
+Error no_mesh(const model::Actor& actor) {
+  return fail(ErrorCode::InvalidParams,
+              fmt::format("expected an actor with a mesh, found that \"{}\" is a skeleton alone", actor.name), "params.actor");
+}
+
 Error no_such_clip(const model::Actor& actor, const std::string& clip) {
   std::string names;
   for (const model::ClipPtr& c : actor.clips) names += (names.empty() ? "\"" : ", \"") + c->name + "\"";

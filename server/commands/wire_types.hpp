@@ -18,7 +18,7 @@
 namespace tweend::commands {
 
 /// What a clip holds, on the wire.
-enum class WireClipType : std::uint8_t { Vertex };
+enum class WireClipType : std::uint8_t { Vertex, Skeletal };
 
 }  // namespace tweend::commands
 
@@ -26,7 +26,7 @@ namespace tweend::protocol {
 
 template <>
 struct EnumNames<commands::WireClipType> {
-  static constexpr std::array<std::string_view, 1> kNames{"vertex"};
+  static constexpr std::array<std::string_view, 2> kNames{"vertex", "skeletal"};
 };
 template <>
 struct EnumNames<animation::Interpolation> {
@@ -149,6 +149,8 @@ struct PlayersResult {
 
 [[nodiscard]] Error no_such_scene(const std::string& scene);
 [[nodiscard]] Error no_such_actor(const model::Scene& scene, const std::string& actor);
+/// What asks for vertices of an actor that is a skeleton alone.
+[[nodiscard]] Error no_mesh(const model::Actor& actor);
 [[nodiscard]] Error no_such_clip(const model::Actor& actor, const std::string& clip);
 /// `actor?`: the named one, or the only one.
 [[nodiscard]] Result<model::ActorPtr> find_actor(const model::Scene& scene, const std::optional<std::string>& actor);

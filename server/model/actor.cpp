@@ -34,12 +34,7 @@ animation::KeyBlend blend_at(const Actor& actor, const Clip& clip, double time_s
                                easing ? &*easing : nullptr);
 }
 
-Status sample_vertices(const Actor& actor, const Clip& clip, double time_s, const animation::VertexTarget& out) noexcept {
-  if (clip.keyframes.empty()) {
-    const std::array sources{actor.rest->attributes()};
-    constexpr std::array kWhole{1.0F};
-    return animation::blend_vertices(sources, kWhole, 0, out);
-  }
+Status sample_keyframes(const Actor& actor, const Clip& clip, double time_s, const animation::VertexTarget& out) noexcept {
   const animation::KeyBlend blend = blend_at(actor, clip, time_s);
   std::array<animation::VertexAttributes, 4> sources;
   for (std::size_t i = 0; i < blend.count; ++i) sources[i] = clip.keyframes[blend.key[i]].vertices->attributes();

@@ -9,6 +9,7 @@
 
 #include "server/base/clock.hpp"
 #include "server/model/scene.hpp"
+#include "server/model/shown.hpp"
 #include "server/stage/player.hpp"
 
 namespace tweend::stage {
@@ -36,8 +37,9 @@ using StageViewPtr = std::shared_ptr<const StageView>;
 /// What one actor shows at a clock reading. A value; holds what it shows alive.
 struct ActorShow {
   model::ActorPtr actor;
-  model::ClipPtr clip;
-  double time_s = 0.0;          ///< of the clip
+  model::ClipPtr clip;          ///< the player's own
+  double time_s = 0.0;          ///< of that clip
+  model::Shown shown;           ///< with what fades into it, and what lies over it
   double spin_angle_rad = 0.0;  ///< about the actor's +Y
   bool moving = false;          ///< the time changes while the clock runs
   bool turning = false;         ///< the spin does

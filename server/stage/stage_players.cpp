@@ -16,7 +16,7 @@ std::shared_ptr<const Players> Stage::players_for(const model::Scene& next, cons
   for (const model::ActorPtr& actor : next.actors) {
     const Player* old = before ? before->find_player(actor->name) : nullptr;
     const model::ActorPtr was = before ? before->scene->find_actor(actor->name) : nullptr;
-    if (old == nullptr || was->mesh != actor->mesh) {  // new, or another model under the same name
+    if (old == nullptr || was->model != actor->model) {  // new, or another model under the same name
       Player fresh;
       fresh.actor = actor->name;
       fresh.clip = actor->clips.front()->name;

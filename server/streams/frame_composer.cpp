@@ -74,12 +74,13 @@ void FrameComposer::compose(const stage::Show& show, const std::optional<model::
 void FrameComposer::add_actor(const stage::ActorShow& show, std::size_t index, render::Picture& out) {
   const model::Actor& actor = *show.actor;
   KnownMesh& known = meshes_[index];
-  if (known.mesh != actor.mesh) known = {actor.mesh, mesh_source(actor.mesh)};
+  if (!actor.model->mesh) return;
+  if (known.mesh != actor.model->mesh) known = {actor.model->mesh, mesh_source(actor.model->mesh)};
   render::DrawItem& item = out.items.emplace_back();
   item.mesh = known.source;
   item.world_from_model = model::world_from_model(actor.settings.transform, show.spin_angle_rad);
   if (show.clip->keyframes.empty()) {
-    item.key[0] = key_source(*actor.rest);
+    item.key[0] = key_source(*actor.model->rest);
     return;
   }
   const animation::KeyBlend blend = model::blend_at(actor, *show.clip, show.time_s);

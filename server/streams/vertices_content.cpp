@@ -14,7 +14,7 @@ bool VerticesContent::follow(const stage::SceneViewPtr& view) {
       std::find_if(actors.begin(), actors.end(), [this](const model::ActorPtr& a) { return a->name == spec_.actor; });
   if (at == actors.end()) return false;
   // Another model of that name has other vertices than the layout that the client was told.
-  if (view_ && view_->scene->actors[actor_]->mesh != (*at)->mesh) return false;
+  if (view_ && view_->scene->actors[actor_]->model != (*at)->model) return false;
   actor_ = static_cast<std::size_t>(at - actors.begin());
   view_ = view;
   return true;
@@ -37,10 +37,10 @@ void VerticesContent::begin(NewPacketPtr packet, ClockUs) {
 }
 
 void VerticesContent::evaluate() {
-  const std::span<float> out = packet_->payload.resize_floats(6 * show_.actor->mesh->vertex_count());
+  const std::span<float> out = packet_->payload.resize_floats(6 * show_.actor->model->vertex_count());
   const std::size_t half = out.size() / 2;
   // The lengths are right by construction: there is nothing to fail.
-  static_cast<void>(model::sample_vertices(*show_.actor, *show_.clip, show_.time_s, {out.first(half), out.subspan(half), {}}));
+  static_cast<void>(evaluator_.vertices(*show_.actor, show_.shown, {out.first(half), out.subspan(half), {}}));
   boost::asio::post(strand_, [this] { evaluated(); });
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/base/worker_pool.hpp"
+#include "server/model/evaluate.hpp"
 #include "server/streams/content.hpp"
 
 namespace tweend::streams {
@@ -35,6 +36,7 @@ class VerticesContent final : public Content {
   std::size_t actor_ = 0;  ///< its index in the view
   // The evaluation under way, handed to a worker and back. Members and not a closure: nothing is allocated for a packet.
   stage::ActorShow show_;
+  model::Evaluator evaluator_;
   NewPacketPtr packet_;
 };
 

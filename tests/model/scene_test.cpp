@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "server/model/evaluate.hpp"
+
 namespace tweend::model {
 namespace {
 
@@ -63,7 +65,7 @@ double farthest_outside(const Scene& scene, const Bounds& box) {
     for (const ClipPtr& clip : a->clips) {
       for (int step = 0; step <= 200; ++step) {
         std::array<float, 9> positions{};
-        EXPECT_TRUE(sample_vertices(*a, *clip, clip->duration_s() * step / 200.0, {positions, {}, {}}));
+        EXPECT_TRUE(Evaluator().vertices(*a, shown_clip(clip, clip->duration_s() * step / 200.0), {positions, {}, {}}));
         for (int turn = 0; turn < (a->settings.spin_rad_s != 0.0 ? 32 : 1); ++turn) {
           for (std::size_t i = 0; i < 9; i += 3) {
             const Point p = placed(a->settings.transform, turn * std::numbers::pi / 16.0,
