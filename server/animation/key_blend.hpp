@@ -17,8 +17,8 @@ struct KeyBlend {
   std::uint32_t nearest = 0;  ///< index into `key` of the keyframe nearer in time: where a blended normal has no length
 };
 
-/// The blend for a place on the timeline. Exactly on a key it is that key alone, with weight 1.
-/// Pure; safe from any thread. The rules are those of docs/PROTOCOL.md, section 4.
+/// The blend for a place on the timeline. Keyframes of vertices have no tangents: a cubic blend takes them as 0. Exactly on a
+/// key it is that key alone, with weight 1. Pure; safe from any thread. The rules are those of docs/PROTOCOL.md, section 4.
 /// @param segment  what `locate` found on the same timeline
 /// @param easing   applied to u before a linear or Catmull-Rom blend; may be null
 [[nodiscard]] KeyBlend blend_keys(const KeyTimeline& timeline, const KeySegment& segment, Interpolation mode,

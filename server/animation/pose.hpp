@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,13 +45,17 @@ class Pose {
   void set_joint(std::size_t joint, const JointPose& pose) noexcept;
 
  private:
-  [[nodiscard]] float* rows() noexcept { return storage_.data() + offset_; }
-  [[nodiscard]] const float* rows() const noexcept { return storage_.data() + offset_; }
+  /// What the allocator is asked for, so that rows stay aligned in copies too.
+  struct alignas(64) Lanes {
+    std::array<float, kPoseLanes> lane;
+  };
+
+  [[nodiscard]] float* rows() noexcept { return storage_.empty() ? nullptr : storage_.front().lane.data(); }
+  [[nodiscard]] const float* rows() const noexcept { return storage_.empty() ? nullptr : storage_.front().lane.data(); }
 
   std::size_t joint_count_ = 0;
   std::size_t stride_ = 0;
-  std::size_t offset_ = 0;  ///< to the first aligned float
-  std::vector<float> storage_;
+  std::vector<Lanes> storage_;
   std::vector<float> weights_;
 };
 

@@ -1,0 +1,33 @@
+#include "server/animation/pose.hpp"
+
+namespace tweend::animation {
+namespace {
+
+constexpr bool is_one_at_rest(std::size_t row) { return row >= static_cast<std::size_t>(PoseRow::Rw); }
+
+}  // namespace
+
+void Pose::reset(std::size_t joint_count, std::size_t weight_count) {
+  const std::size_t vectors = (joint_count + kPoseLanes - 1) / kPoseLanes;
+  joint_count_ = joint_count;
+  stride_ = vectors * kPoseLanes;
+  storage_.resize(kPoseRows * vectors);
+  for (std::size_t i = 0; i < storage_.size(); ++i) storage_[i].lane.fill(is_one_at_rest(i / vectors) ? 1.0F : 0.0F);
+  weights_.assign(weight_count, 0.0F);
+}
+
+JointPose Pose::joint(std::size_t joint) const noexcept {
+  const auto at = [&](PoseRow wanted) { return row(wanted)[joint]; };
+  return {{at(PoseRow::Tx), at(PoseRow::Ty), at(PoseRow::Tz)},
+          {at(PoseRow::Rw), at(PoseRow::Rx), at(PoseRow::Ry), at(PoseRow::Rz)},
+          {at(PoseRow::Sx), at(PoseRow::Sy), at(PoseRow::Sz)}};
+}
+
+void Pose::set_joint(std::size_t joint, const JointPose& pose) noexcept {
+  const std::array<float, kPoseRows> values{pose.translation.x, pose.translation.y, pose.translation.z, pose.rotation.x,
+                                            pose.rotation.y,    pose.rotation.z,    pose.rotation.w,    pose.scale.x,
+                                            pose.scale.y,       pose.scale.z};
+  for (std::size_t i = 0; i < kPoseRows; ++i) row(static_cast<PoseRow>(i))[joint] = values[i];
+}
+
+}  // namespace tweend::animation
