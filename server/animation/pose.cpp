@@ -16,6 +16,13 @@ void Pose::reset(std::size_t joint_count, std::size_t weight_count) {
   weights_.assign(weight_count, 0.0F);
 }
 
+void Pose::assign(const Pose& joints, std::size_t weight_count) {
+  joint_count_ = joints.joint_count_;
+  stride_ = joints.stride_;
+  storage_ = joints.storage_;
+  weights_.assign(weight_count, 0.0F);
+}
+
 JointPose Pose::joint(std::size_t joint) const noexcept {
   const auto at = [&](PoseRow wanted) { return row(wanted)[joint]; };
   return {{at(PoseRow::Tx), at(PoseRow::Ty), at(PoseRow::Tz)},
