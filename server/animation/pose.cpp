@@ -22,8 +22,9 @@ void Pose::reset(std::size_t joint_count, std::size_t weight_count) {
 void Pose::assign(const Pose& joints, std::size_t weight_count) {
   joint_count_ = joints.joint_count_;
   stride_ = joints.stride_;
-  storage_ = joints.storage_;
-  weights_.assign(weight_count, 0.0F);
+  rows_ = joints.rows_;
+  weight_count_ = weight_count;
+  weights_.assign(vectors_for(weight_count), Lanes());
 }
 
 JointPose Pose::joint(std::size_t joint) const noexcept {
