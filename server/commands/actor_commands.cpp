@@ -72,7 +72,7 @@ struct ActorAddResult {
   }
 };
 
-struct ActorUpdateParams : EditTarget {
+struct ActorUpdateParams : EditTarget, Timed {
   static constexpr std::string_view kName = "ActorUpdateParams";
   std::optional<std::string> actor;
   std::optional<TransformParams> transform;
@@ -82,6 +82,7 @@ struct ActorUpdateParams : EditTarget {
   static void describe(FieldList<ActorUpdateParams>& f) {
     using T = ActorUpdateParams;
     add_edit_fields(f);
+    add_timed_fields(f);
     add_actor_field(f);
     f.add<&T::transform>("transform", "Where it stands; what is left out stays.");
     f.add<&T::interpolation>("interpolation", "For all its clips; null: let them say.");
@@ -141,8 +142,10 @@ Result<std::vector<model::ClipPtr>> make_clips(const ActorAddParams& p, const mo
   for (const model::Clip& from : source.clips) {
     const std::size_t most = context.services.limits.keyframes_per_clip;
     if (from.keyframes.size() > most) {
-      return fail(ErrorCode::Limit, fmt::format("expected at most {} keyframes in a clip, found {} in \"{}\"", most,
-                                                from.keyframes.size(), from.name), "params.asset");
+      return fail(
+          ErrorCode::Limit,
+          fmt::format("expected at most {} keyframes in a clip, found {} in \"{}\"", most, from.keyframes.size(), from.name),
+          "params.asset");
     }
     model::Clip clip = from;
     clip.settings.closed = p.closed.value_or(clip.settings.closed);

@@ -220,8 +220,9 @@ Result<model::VertexKeyPtr> make_vertices(const KeyframeContent& p, const model:
   if (p.vertices) return context.once("vertices " + mesh, [&] { return given_vertices(*p.vertices, *actor->model->mesh); });
   const stage::Player* player = context.view ? context.view->find_player(actor->name) : nullptr;
   // An actor whose creation is not published yet has no player: it shows its first clip from the start.
-  const stage::ActorShow show = player != nullptr ? stage::show_actor(actor, *player, context.now_us)
-                                                  : stage::ActorShow{actor, actor->clips.front(), 0.0, model::shown_clip(actor->clips.front(), 0.0)};
+  const stage::ActorShow show =
+      player != nullptr ? stage::show_actor(actor, *player, context.now_us)
+                        : stage::ActorShow{actor, actor->clips.front(), 0.0, model::shown_clip(actor->clips.front(), 0.0)};
   const std::string picture = fmt::format("capture {} {} {} {}", mesh, fmt::ptr(actor.get()), show.clip->name, show.time_s);
   return context.once(picture, [&] { return captured_vertices(*actor, show); });
 }

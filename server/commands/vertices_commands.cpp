@@ -54,7 +54,8 @@ Result<SampleResult> sample(const SampleParams& p, const QueryContext& context) 
   SampleResult result{time_s, count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
   const model::Shown shown = as_shown ? now.shown : model::shown_clip(clip, time_s);
   TWEEND_TRY(model::Evaluator().vertices(*actor, shown, {result.positions, result.normals, {}}));
-  if (p.indices) result.indices = std::vector<std::uint32_t>(actor->model->mesh->indices().begin(), actor->model->mesh->indices().end());
+  if (p.indices)
+    result.indices = std::vector<std::uint32_t>(actor->model->mesh->indices().begin(), actor->model->mesh->indices().end());
   return result;
 }
 
