@@ -23,6 +23,7 @@ const std::vector<Command>& command_table() {
     add_layer_commands(t);
     add_view_commands(t);
     add_vertices_commands(t);
+    add_pose_commands(t);
     add_frame_commands(t);
     add_stream_commands(t);
     add_event_commands(t);

@@ -59,6 +59,7 @@ struct Player : Motion {
   std::optional<Queue> queue;
   std::vector<Fade> fades;             ///< oldest first
   std::vector<LayerFade> layer_fades;  ///< oldest first
+  model::PoseKeyPtr live;              ///< a live pose over what the clips show; null: none
   std::uint64_t jumps = 0;             ///< seeks, stops, clip changes: breaks in what is shown
   std::uint64_t starts = 0;            ///< times that playing began, or began anew from elsewhere
 

@@ -87,6 +87,7 @@ ActorShow show_actor(const model::ActorPtr& actor, const Player& player, ClockUs
   const PlayerReading reading = player.read(range, at_us);
   ActorShow show{actor, clip,  reading.time_s,     {}, actor->settings.spin_rad_s * reading.played_s,
                  false, false, player.jumps << 32U};
+  show.shown.live = player.live;
   const bool can_move = range.length_s() > 0.0 || !actor->layers.empty();
   show.moving = reading.playing && player.speed != 0.0 && can_move;
   show.turning = reading.playing && actor->settings.spin_rad_s != 0.0;

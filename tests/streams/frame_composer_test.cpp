@@ -33,7 +33,8 @@ stage::Show show_of(std::vector<model::ActorPtr> actors, double time_s) {
   const model::ScenePtr scene = scene_of("main", std::move(actors));
   show.scene = scene;
   for (const model::ActorPtr& actor : scene->actors) {
-    show.actors.push_back({actor, actor->clips.front(), time_s, 0.0, false, false, 0});
+    const model::ClipPtr& clip = actor->clips.front();
+    show.actors.push_back({actor, clip, time_s, model::shown_clip(clip, time_s), 0.0, false, false, 0});
   }
   return show;
 }
