@@ -21,7 +21,7 @@ constexpr glm::vec3 kJointColor{1.0F, 0.55F, 0.1F};
 
 /// Where along a bone, and how far from its middle, its widest corners are; its length is 1.
 constexpr float kWaist = 0.15F;
-constexpr float kHalfWidth = 0.09F;
+constexpr float kHalfWidth = 0.1F;
 
 constexpr int kRings = 8;
 constexpr int kSegments = 14;
