@@ -45,7 +45,7 @@ KeyBlend blend_keys(const KeyTimeline& timeline, const KeySegment& segment, Inte
   BlendBuilder builder;
   if (mode == Interpolation::CatmullRom) {
     const CatmullRomWeights spline = catmull_rom_weights(timeline, segment, u);
-    for (const std::size_t i : {1U, 2U, 0U, 3U}) builder.add(spline.key[i], spline.weight[i]);
+    for (std::size_t i = 0; i < 4; ++i) builder.add(spline.key[i], spline.weight[i]);
   } else if (mode == Interpolation::Cubic) {
     const HermiteWeights cubic = hermite_weights(segment.u, 0.0);  // without tangents their unit does not matter
     builder.add(segment.from, cubic.from);

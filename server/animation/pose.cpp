@@ -3,17 +3,28 @@
 namespace tweend::animation {
 namespace {
 
+constexpr std::size_t vectors_for(std::size_t floats) { return (floats + kPoseLanes - 1) / kPoseLanes; }
+
 constexpr bool is_one_at_rest(std::size_t row) { return row >= static_cast<std::size_t>(PoseRow::Rw); }
 
 }  // namespace
 
 void Pose::reset(std::size_t joint_count, std::size_t weight_count) {
-  const std::size_t vectors = (joint_count + kPoseLanes - 1) / kPoseLanes;
+  const std::size_t vectors = vectors_for(joint_count);
   joint_count_ = joint_count;
   stride_ = vectors * kPoseLanes;
-  storage_.resize(kPoseRows * vectors);
-  for (std::size_t i = 0; i < storage_.size(); ++i) storage_[i].lane.fill(is_one_at_rest(i / vectors) ? 1.0F : 0.0F);
-  weights_.assign(weight_count, 0.0F);
+  rows_.resize(kPoseRows * vectors);
+  for (std::size_t i = 0; i < rows_.size(); ++i) rows_[i].lane.fill(is_one_at_rest(i / vectors) ? 1.0F : 0.0F);
+  weight_count_ = weight_count;
+  weights_.assign(vectors_for(weight_count), Lanes());
+}
+
+void Pose::assign(const Pose& joints, std::size_t weight_count) {
+  joint_count_ = joints.joint_count_;
+  stride_ = joints.stride_;
+  rows_ = joints.rows_;
+  weight_count_ = weight_count;
+  weights_.assign(vectors_for(weight_count), Lanes());
 }
 
 JointPose Pose::joint(std::size_t joint) const noexcept {

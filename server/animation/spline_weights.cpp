@@ -41,8 +41,8 @@ CatmullRomWeights catmull_rom_weights(const KeyTimeline& timeline, const KeySegm
   const double v = 1.0 - u;
   const double from_tangent = u * v * v * (h / (previous.distance_s + h));
   const double to_tangent = -u * u * v * (h / (h + next.distance_s));
-  return {{previous.key, segment.from, segment.to, next.key},
-          {-from_tangent, v * v * (1.0 + 2.0 * u) - to_tangent, u * u * (1.0 + 2.0 * v) + from_tangent, to_tangent}};
+  return {{segment.from, segment.to, previous.key, next.key},
+          {v * v * (1.0 + 2.0 * u) - to_tangent, u * u * (1.0 + 2.0 * v) + from_tangent, -from_tangent, to_tangent}};
 }
 
 HermiteWeights hermite_weights(double u, double length_s) noexcept {

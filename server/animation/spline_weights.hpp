@@ -10,8 +10,8 @@ namespace tweend::animation {
 /// Seconds from `segment.from` to `segment.to`, over the seam where `to` is not the key that follows.
 [[nodiscard]] double segment_length_s(const KeyTimeline& timeline, const KeySegment& segment) noexcept;
 
-/// The four keys of a Catmull-Rom segment in their order (the one before, from, to, the one after), with their weights. Keys
-/// may repeat: at open ends, and in closed clips of two or three keys.
+/// The four keys of a Catmull-Rom segment (from, to, the one before, the one after), with their weights. Keys may repeat: at
+/// open ends, and in closed clips of two or three keys.
 struct CatmullRomWeights {
   std::array<std::uint32_t, 4> key{};
   std::array<double, 4> weight{};  ///< sum 1

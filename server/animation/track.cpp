@@ -1,111 +1,122 @@
 #include "server/animation/track.hpp"
 
-#include <cmath>
-#include <glm/geometric.hpp>
+#include <algorithm>
+#include <utility>
 #include <vector>
 
-#include "server/animation/key_timeline.hpp"
-#include "server/animation/spline_weights.hpp"
+#include "server/animation/lane_blocks.hpp"
+#include "server/animation/loose_tracks.hpp"
+#include "server/animation/sheet.hpp"
 
 namespace tweend::animation {
 namespace {
 
-struct Track {
-  explicit Track(const TrackSource& source)
-      : channel(source.channel),
-        times_s(source.times_s.begin(), source.times_s.end()),
-        values(source.values.begin(), source.values.end()),
-        in_tangents(source.in_tangents.begin(), source.in_tangents.end()),
-        out_tangents(source.out_tangents.begin(), source.out_tangents.end()),
-        modes(source.modes.begin(), source.modes.end()) {}
+using Tracks = std::vector<const TrackSource*>;
 
-  [[nodiscard]] const KeyMode& mode(std::size_t key) const { return modes[modes.size() == 1 ? 0 : key]; }
+/// A sheet may leave so many lanes of its vectors empty for each that is used: below that memory is worth less than time.
+constexpr std::size_t kEmptiestSheet = 4;
 
-  Channel channel;
-  std::vector<double> times_s;
-  std::vector<glm::vec4> values;
-  std::vector<glm::vec4> in_tangents;
-  std::vector<glm::vec4> out_tangents;
-  std::vector<KeyMode> modes;
-};
-
-/// The short way from a to b.
-glm::dvec4 slerp(const glm::dvec4& a, glm::dvec4 b, double u) {
-  if (glm::dot(a, b) < 0.0) b = -b;
-  const double cosine = glm::dot(a, b);
-  if (cosine > 1.0 - 1e-12) return glm::normalize(glm::mix(a, b, u));
-  const double angle = std::acos(cosine);
-  return (a * std::sin((1.0 - u) * angle) + b * std::sin(u * angle)) / std::sin(angle);
+bool is_constant(const TrackSource& track) {
+  const auto is_zero = [](const glm::vec4& v) { return v == glm::vec4(0.0F); };
+  return std::ranges::all_of(track.values, [&](const glm::vec4& v) { return v == track.values.front(); }) &&
+         std::ranges::all_of(track.in_tangents, is_zero) && std::ranges::all_of(track.out_tangents, is_zero);
 }
 
-glm::dvec4 catmull_rom(const Track& track, const CatmullRomWeights& spline) {
-  glm::dvec4 sum(0.0);
-  glm::dvec4 previous(0.0);
-  for (std::size_t i = 0; i < 4; ++i) {
-    glm::dvec4 value(track.values[spline.key[i]]);
-    if (track.channel.property == Property::Rotation && glm::dot(previous, value) < 0.0) value = -value;
-    sum += spline.weight[i] * value;
-    previous = value;
-  }
-  return track.channel.property == Property::Rotation ? glm::normalize(sum) : sum;
+bool same_times(const TrackSource& a, const TrackSource& b) {
+  if (a.times_s.data() == b.times_s.data() && a.times_s.size() == b.times_s.size()) return true;
+  return std::ranges::equal(a.times_s, b.times_s);
 }
 
-glm::dvec4 cubic(const Track& track, const KeySegment& segment, const HermiteWeights& weights) {
-  glm::dvec4 sum = weights.from * glm::dvec4(track.values[segment.from]) + weights.to * glm::dvec4(track.values[segment.to]);
-  if (!track.out_tangents.empty()) sum += weights.out_tangent * glm::dvec4(track.out_tangents[segment.from]);
-  if (!track.in_tangents.empty()) sum += weights.in_tangent * glm::dvec4(track.in_tangents[segment.to]);
-  return track.channel.property == Property::Rotation ? glm::normalize(sum) : sum;
+bool times_less(const TrackSource& a, const TrackSource& b) {
+  if (a.times_s.size() != b.times_s.size()) return a.times_s.size() < b.times_s.size();
+  if (a.times_s.data() == b.times_s.data()) return false;
+  return std::ranges::lexicographical_compare(a.times_s, b.times_s);
 }
 
-glm::vec4 value_at(const Track& track, const KeyTimeline& timeline, double time_s, Interpolation fallback) {
-  const KeySegment segment = locate(timeline, time_s);
-  const KeyMode& key_mode = track.mode(segment.from);
-  const Interpolation mode = key_mode.interpolation.value_or(fallback);
-  const glm::vec4& from = track.values[segment.from];
-  if (segment.from == segment.to || mode == Interpolation::Step) return from;
-  if (mode == Interpolation::Cubic) {
-    return glm::vec4(cubic(track, segment, hermite_weights(segment.u, segment_length_s(timeline, segment))));
-  }
-  const double u = key_mode.easing ? ease(*key_mode.easing, segment.u) : segment.u;
-  if (mode == Interpolation::CatmullRom) return glm::vec4(catmull_rom(track, catmull_rom_weights(timeline, segment, u)));
-  const glm::dvec4 a(from), b(track.values[segment.to]);
-  return glm::vec4(track.channel.property == Property::Rotation ? slerp(a, b, u) : glm::mix(a, b, u));
+bool has_tangents(const TrackSource& track) { return !track.in_tangents.empty() || !track.out_tangents.empty(); }
+
+/// Whether the same SegmentBlend holds for both at any time. Those without tangents stay apart: they would store zeros.
+bool blend_alike(const TrackSource& a, const TrackSource& b) {
+  return has_tangents(a) == has_tangents(b) && std::ranges::equal(a.modes, b.modes) && same_times(a, b);
 }
 
-void write(const Channel& channel, const glm::vec4& value, Pose& pose) {
-  if (channel.property == Property::Weight) {
-    pose.weights()[channel.target] = value.x;
-    return;
+/// Those of one row share all that blend_alike asks for; each row keeps the order of `tracks`.
+std::vector<Tracks> grouped(Tracks tracks) {
+  std::ranges::stable_sort(tracks, [](const auto* a, const auto* b) { return times_less(*a, *b); });
+  std::vector<Tracks> groups;
+  std::size_t first_of_times = 0;
+  for (const TrackSource* track : tracks) {
+    if (!groups.empty() && !same_times(*groups.back().front(), *track)) first_of_times = groups.size();
+    const auto fits = [&](const Tracks& group) { return blend_alike(*group.front(), *track); };
+    const auto group = std::find_if(groups.begin() + static_cast<std::ptrdiff_t>(first_of_times), groups.end(), fits);
+    if (group == groups.end()) {
+      groups.push_back({track});
+    } else {
+      group->push_back(track);
+    }
   }
-  const std::size_t first_row = static_cast<std::size_t>(channel.property == Property::Translation ? PoseRow::Tx
-                                                         : channel.property == Property::Rotation  ? PoseRow::Rx
-                                                                                                   : PoseRow::Sx);
-  const int rows = channel.property == Property::Rotation ? 4 : 3;
-  for (int i = 0; i < rows; ++i) {
-    pose.row(static_cast<PoseRow>(first_row + static_cast<std::size_t>(i)))[channel.target] = value[i];
-  }
+  return groups;
+}
+
+/// Puts tracks whose lanes lie beside each other side by side.
+void sort_by_property(Tracks& tracks) {
+  std::ranges::sort(tracks, {},
+                    [](const TrackSource* track) { return std::pair(track->channel.property, track->channel.target); });
+}
+
+/// What a constant track needs: its value, at any time.
+TrackSource first_key_of(const TrackSource& track) {
+  return {track.channel, track.times_s.first(1), track.values.first(1), {}, {}, track.modes.first(1)};
 }
 
 }  // namespace
 
 struct TrackSet::Packed {
-  std::vector<Track> tracks;
+  std::vector<Sheet> sheets;  ///< the first one of constants, if there are any
+  LooseTracks loose;
   double duration_s = 0.0;
   bool closed = false;
 };
 
-TrackSet::TrackSet(std::span<const TrackSource> sources, double duration_s, bool closed)
-    : packed_(std::make_unique<const Packed>(Packed{{sources.begin(), sources.end()}, duration_s, closed})) {}
+TrackSet::TrackSet(std::span<const TrackSource> sources, double duration_s, bool closed) {
+  std::vector<TrackSource> constants;
+  Tracks moving;
+  for (const TrackSource& source : sources) {
+    if (is_constant(source)) {
+      constants.push_back(first_key_of(source));
+    } else {
+      moving.push_back(&source);
+    }
+  }
+  auto packed = std::make_unique<Packed>();
+  packed->duration_s = duration_s;
+  packed->closed = closed;
+  Tracks held;
+  for (const TrackSource& constant : constants) held.push_back(&constant);
+  sort_by_property(held);
+  if (!held.empty()) packed->sheets.emplace_back(held);
+  sort_by_property(moving);
+  Tracks loose;
+  for (const Tracks& group : grouped(std::move(moving))) {
+    if (group.size() * kEmptiestSheet >= sheet_lanes(group)) {
+      packed->sheets.emplace_back(group);
+    } else {
+      loose.insert(loose.end(), group.begin(), group.end());
+    }
+  }
+  sort_by_property(loose);
+  packed->loose = LooseTracks(loose);
+  packed_ = std::move(packed);
+}
 
 TrackSet::~TrackSet() = default;
 TrackSet::TrackSet(TrackSet&&) noexcept = default;
 TrackSet& TrackSet::operator=(TrackSet&&) noexcept = default;
 
 void TrackSet::sample(double time_s, Interpolation fallback, Pose& pose) const noexcept {
-  for (const Track& track : packed_->tracks) {
-    const KeyTimeline timeline{track.times_s, packed_->duration_s, packed_->closed};
-    write(track.channel, value_at(track, timeline, time_s, fallback), pose);
-  }
+  const PoseFloats out(pose);
+  for (const Sheet& sheet : packed_->sheets) sheet.sample(time_s, packed_->duration_s, packed_->closed, fallback, out);
+  packed_->loose.sample(time_s, packed_->duration_s, packed_->closed, fallback, out);
 }
 
 }  // namespace tweend::animation

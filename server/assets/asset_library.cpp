@@ -97,7 +97,7 @@ Result<model::ImportedModel> AssetLibrary::find_and_import(std::string_view name
 
 /// Nothing where `name` is a folder, but not a sequence.
 Result<std::optional<model::ImportedModel>> AssetLibrary::import_from(const AssetRoot& root, std::string_view name,
-                                                                       const ImportOptions& options) const {
+                                                                      const ImportOptions& options) const {
   TWEEND_ASSIGN(const AssetEntry entry, root.find(name));
   if (entry.directory) {
     TWEEND_ASSIGN(std::vector<AssetEntry> entries, root.list_folder(name));
@@ -119,7 +119,7 @@ Result<ObjModel> AssetLibrary::import_file(const AssetRoot& root, std::string_vi
 }
 
 Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
-                                                    std::vector<SequenceFile> members) const {
+                                               std::vector<SequenceFile> members) const {
   TWEEND_ASSIGN(members, order_sequence(std::move(members)));
   if (total_bytes(members) > limits_.asset_bytes) return too_many_bytes(name, limits_.asset_bytes);
   if (members.size() > limits_.keyframes_per_clip) {
@@ -141,7 +141,7 @@ Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::strin
 }
 
 Result<ObjModel> AssetLibrary::build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
-                                          std::span<const std::int64_t> frames, std::size_t bytes_left) const {
+                                     std::span<const std::int64_t> frames, std::size_t bytes_left) const {
   TWEEND_ASSIGN(ObjMaterials found, load_obj_materials(root, files.front(), bytes_left, limits_));
   TWEEND_ASSIGN(ObjModel model, build_obj_model(std::string(name), files, frames, limits_, found.materials));
   model.warnings = std::move(found.warnings);

@@ -54,13 +54,13 @@ class AssetLibrary {
  private:
   [[nodiscard]] Result<model::ImportedModel> find_and_import(std::string_view name, const ImportOptions& options = {}) const;
   [[nodiscard]] Result<std::optional<model::ImportedModel>> import_from(const AssetRoot& root, std::string_view name,
-                                                                    const ImportOptions& options) const;
+                                                                        const ImportOptions& options) const;
   [[nodiscard]] Result<ObjModel> import_file(const AssetRoot& root, std::string_view name) const;
   [[nodiscard]] Result<ObjModel> import_sequence(const AssetRoot& root, std::string_view name,
-                                                      std::vector<SequenceFile> members) const;
+                                                 std::vector<SequenceFile> members) const;
   /// @param bytes_left  for the side files of `files`
   [[nodiscard]] Result<ObjModel> build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
-                                            std::span<const std::int64_t> frames, std::size_t bytes_left) const;
+                                       std::span<const std::int64_t> frames, std::size_t bytes_left) const;
 
   std::vector<AssetRoot> roots_;
   Limits limits_;

@@ -132,7 +132,7 @@ Error asset_error(std::string_view name, const Error& error) {
 }  // namespace
 
 Result<ObjModel> build_obj_model(std::string source, std::span<const ObjFile> files, std::span<const std::int64_t> frames,
-                                      const Limits& limits, std::span<const std::optional<model::Material>> materials) {
+                                 const Limits& limits, std::span<const std::optional<model::Material>> materials) {
   TWEEND_TRY(check_input(files, frames, limits));
   const VertexClasses vertices = find_vertices(files);
   if (vertices.count() > limits.vertices_per_actor) {

@@ -44,8 +44,8 @@ struct ObjModel {
 /// @return BadAsset where two files' faces don't agree (see check_same_topology) or numbers can't be used;
 ///         Limit if there are too many vertices or files
 [[nodiscard]] Result<ObjModel> build_obj_model(std::string source, std::span<const ObjFile> files,
-                                                    std::span<const std::int64_t> frames, const Limits& limits,
-                                                    std::span<const std::optional<model::Material>> materials = {});
+                                               std::span<const std::int64_t> frames, const Limits& limits,
+                                               std::span<const std::optional<model::Material>> materials = {});
 
 /// What the name of a sequence's file says: "NAME_000010.obj" is {NAME, 10}.
 struct SequenceMember {

@@ -15,6 +15,7 @@ struct Limits {
   std::size_t scenes = 256;
   std::size_t actors_per_scene = 1'024;
   std::size_t vertices_per_actor = 4'000'000;
+  std::size_t joints_per_actor = 4'096;
   std::size_t keyframes_per_clip = 100'000;
   std::size_t clips_per_actor = 1'024;
   std::size_t undo_steps = 1'000;

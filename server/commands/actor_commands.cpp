@@ -5,6 +5,7 @@
 #include "server/base/log.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/edit_helpers.hpp"
+#include "server/commands/pose_types.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -27,6 +28,7 @@ struct ActorAddParams : EditTarget {
   protocol::Name actor;
   std::optional<std::string> asset;
   std::optional<MeshParams> mesh;
+  std::optional<SkeletonParams> skeleton;
   std::optional<double> fps;
   std::optional<bool> closed;
   std::optional<double> duration;
@@ -36,8 +38,9 @@ struct ActorAddParams : EditTarget {
     using T = ActorAddParams;
     add_edit_fields(f);
     f.add<&T::actor>("actor", "The new actor's name.");
-    f.add<&T::asset>("asset", "An asset's name (asset.list has them); or give mesh.");
-    f.add<&T::mesh>("mesh", "A mesh; its clip `default` is empty at first. Or give asset.");
+    f.add<&T::asset>("asset", "An asset's name (asset.list has them); or give mesh or skeleton.");
+    f.add<&T::mesh>("mesh", "A mesh; its clip `default` is empty at first.");
+    f.add<&T::skeleton>("skeleton", "A skeleton; its clip `default` is empty at first.");
     f.add<&T::fps>("fps", "Frames a second of an OBJ sequence; 24 if left out.",
                    {.min = 0.0, .max = 10'000.0, .min_excluded = true});
     f.add<&T::closed>("closed", "Whether the clip blends from its last keyframe back to the first.");
@@ -46,11 +49,18 @@ struct ActorAddParams : EditTarget {
     f.add<&T::interpolation>("interpolation", "For all its clips, where a keyframe says no other.");
   }
   [[nodiscard]] Status check() const {
-    if (asset.has_value() == mesh.has_value()) {
-      return fail(ErrorCode::InvalidParams, fmt::format("expected asset or mesh, found {}", asset ? "both" : "neither"),
-                  asset ? "mesh" : "asset");
+    const int given = int{asset.has_value()} + int{mesh.has_value()} + int{skeleton.has_value()};
+    if (given != 1) {
+      return fail(ErrorCode::InvalidParams,
+                  fmt::format("expected one of asset, mesh and skeleton, found {}", given == 0 ? "none" : "several"),
+                  given == 0 ? "asset"
+                  : skeleton ? "skeleton"
+                             : "mesh");
     }
-    if (mesh && fps) return fail(ErrorCode::InvalidParams, "expected fps with an OBJ sequence, found it with a mesh", "fps");
+    if (!asset && fps) {
+      return fail(ErrorCode::InvalidParams,
+                  fmt::format("expected fps with an OBJ sequence, found it with a {}", mesh ? "mesh" : "skeleton"), "fps");
+    }
     return {};
   }
 };
@@ -78,6 +88,7 @@ struct ActorUpdateParams : EditTarget {
   std::optional<TransformParams> transform;
   Nullable<Interpolation> interpolation;
   std::optional<bool> visible;
+  std::optional<bool> show_skeleton;
   std::optional<double> spin;
   static void describe(FieldList<ActorUpdateParams>& f) {
     using T = ActorUpdateParams;
@@ -86,6 +97,7 @@ struct ActorUpdateParams : EditTarget {
     f.add<&T::transform>("transform", "Where it stands; what is left out stays.");
     f.add<&T::interpolation>("interpolation", "For all its clips; null: let them say.");
     f.add<&T::visible>("visible", "Whether it is drawn.");
+    f.add<&T::show_skeleton>("show_skeleton", "Whether joints and bones are drawn over the mesh.");
     f.add<&T::spin>("spin", "Radians a second about +Y while playing.");
   }
 };
@@ -134,6 +146,17 @@ Result<model::ImportedModel> make_mesh(const MeshParams& p, const Services& serv
   return model::ImportedModel{"mesh", std::move(model), empty_clip(), {}};
 }
 
+Result<model::ImportedModel> make_bare_skeleton(const SkeletonParams& p, const Services& services) {
+  TWEEND_ASSIGN(model::SkeletonPtr skeleton, make_skeleton(p, services.limits));
+  auto model = std::make_shared<const model::Model>(model::Model{{}, {}, std::move(skeleton), {}, {}});
+  return model::ImportedModel{"skeleton", std::move(model), empty_clip(), {}};
+}
+
+Result<model::ImportedModel> make_source(const ActorAddParams& p, const Services& services) {
+  if (p.asset) return import_asset(p, services);
+  return p.mesh ? make_mesh(*p.mesh, services) : make_bare_skeleton(*p.skeleton, services);
+}
+
 /// The actor's clips, with ids for their keyframes and what the request says of them.
 Result<std::vector<model::ClipPtr>> make_clips(const ActorAddParams& p, const model::ImportedModel& source,
                                                EditContext& context) {
@@ -141,8 +164,10 @@ Result<std::vector<model::ClipPtr>> make_clips(const ActorAddParams& p, const mo
   for (const model::Clip& from : source.clips) {
     const std::size_t most = context.services.limits.keyframes_per_clip;
     if (from.keyframes.size() > most) {
-      return fail(ErrorCode::Limit, fmt::format("expected at most {} keyframes in a clip, found {} in \"{}\"", most,
-                                                from.keyframes.size(), from.name), "params.asset");
+      return fail(
+          ErrorCode::Limit,
+          fmt::format("expected at most {} keyframes in a clip, found {} in \"{}\"", most, from.keyframes.size(), from.name),
+          "params.asset");
     }
     model::Clip clip = from;
     clip.settings.closed = p.closed.value_or(clip.settings.closed);
@@ -162,8 +187,7 @@ Result<ActorAddResult> add_actor(const ActorAddParams& p, EditContext& context) 
   if (const std::size_t most = context.services.limits.actors_per_scene; context.scene().actors.size() >= most) {
     return fail(ErrorCode::Limit, fmt::format("expected at most {} actors in a scene, found as many; remove one first", most));
   }
-  const Result<model::ImportedModel>& source = context.once(
-      "source", [&] { return p.asset ? import_asset(p, context.services) : make_mesh(*p.mesh, context.services); });
+  const Result<model::ImportedModel>& source = context.once("source", [&] { return make_source(p, context.services); });
   if (!source) return source.error();
   model::Actor actor;
   actor.name = p.actor.text;
@@ -186,6 +210,7 @@ Result<RevisionResult> update_actor(const ActorUpdateParams& p, EditContext& con
   if (p.transform) p.transform->apply_to(settings.transform);
   settings.interpolation = p.interpolation.value_or(settings.interpolation);
   settings.visible = p.visible.value_or(settings.visible);
+  settings.show_skeleton = p.show_skeleton.value_or(settings.show_skeleton);
   settings.spin_rad_s = p.spin.value_or(settings.spin_rad_s);
   context.transaction.apply(stage::SetActorSettings{actor->name, settings});
   context.transaction.about({actor->name, {}, {}});
@@ -202,7 +227,8 @@ Result<RevisionResult> remove_actor(const ActorRemoveParams& p, EditContext& con
 }  // namespace
 
 void add_actor_commands(std::vector<Command>& t) {
-  t.push_back(edit_command<&add_actor>("actor.add", Role::Control, "Add a model, from an asset or a mesh.", Shape::HeavyEdit));
+  t.push_back(edit_command<&add_actor>("actor.add", Role::Control, "Add a model, from an asset, a mesh or a skeleton.",
+                                       Shape::HeavyEdit));
   t.push_back(edit_command<&update_actor>("actor.update", Role::Control, "Move an actor, or change how it is shown."));
   t.push_back(edit_command<&remove_actor>("actor.remove", Role::Control, "Remove an actor."));
 }

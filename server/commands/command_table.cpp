@@ -19,6 +19,7 @@ const std::vector<Command>& command_table() {
     add_playback_commands(t);
     add_view_commands(t);
     add_vertices_commands(t);
+    add_pose_commands(t);
     add_frame_commands(t);
     add_stream_commands(t);
     add_event_commands(t);

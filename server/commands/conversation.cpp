@@ -294,12 +294,11 @@ void Conversation::start_players(const ItemKey& key, Item& item) {
   const auto change = [command = item.command, params = item.params](const stage::PlayersTurn& turn) {
     return command->players(params.get(), turn);
   };
-  services_.stage.change_players(item.command->players_scene(item.params.get()), change,
-                                 [self = shared_from_this(), key](Result<stage::PlayersAnswer> answer) {
-                                   if (!answer) return self->finish_later(key, answer.error());
-                                   self->finish_later(
-                                       key, protocol::encode(players_result(*answer->view, answer->concerned, answer->now_us)));
-                                 });
+  const auto done = [self = shared_from_this(), key, command = item.command](Result<stage::PlayersAnswer> answer) {
+    if (!answer) return self->finish_later(key, answer.error());
+    self->finish_later(key, command->players_answer(*answer));
+  };
+  services_.stage.change_players(item.command->players_scene(item.params.get()), change, done);
 }
 
 void Conversation::start_connection(const ItemKey& key, Item& item) {

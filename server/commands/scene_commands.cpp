@@ -111,16 +111,6 @@ struct ClipState {
   }
 };
 
-struct JointState {
-  static constexpr std::string_view kName = "Joint";
-  std::string name;
-  std::optional<std::string> parent;
-  static void describe(FieldList<JointState>& f) {
-    f.add<&JointState::name>("name", "Its name.");
-    f.add<&JointState::parent>("parent", "The parent's name; a root has none.");
-  }
-};
-
 struct ActorState {
   static constexpr std::string_view kName = "Actor";
   std::string actor;
@@ -128,23 +118,27 @@ struct ActorState {
   TransformState transform;
   Nullable<Interpolation> interpolation;
   bool visible = true;
+  bool show_skeleton = false;
   double spin = 0.0;
   PlayerState player;
   std::vector<ClipState> clips;
   std::vector<JointState> joints;
+  std::vector<std::string> weights;
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   static void describe(FieldList<ActorState>& f) {
     using T = ActorState;
     f.add<&T::actor>("actor", "Its name.");
-    f.add<&T::source>("source", "The asset it came from, or mesh.");
+    f.add<&T::source>("source", "The asset it came from, or mesh, or skeleton.");
     f.add<&T::transform>("transform", "World from model.");
     f.add<&T::interpolation>("interpolation", "The actor's own; null: its clips say.");
     f.add<&T::visible>("visible", "Whether it is drawn.");
+    f.add<&T::show_skeleton>("show_skeleton", "Whether joints and bones are drawn over the mesh.");
     f.add<&T::spin>("spin", "Radians a second about +Y while playing.");
     f.add<&T::player>("player", "Its transport.");
     f.add<&T::clips>("clips", "In the order they were made.");
     f.add<&T::joints>("joints", "Its skeleton; a mesh without one has none.");
+    f.add<&T::weights>("weights", "Names of its morph targets.");
     f.add<&T::vertices>("vertices", "How many.");
     f.add<&T::triangles>("triangles", "How many.");
   }
@@ -187,10 +181,12 @@ ActorState actor_state(const stage::SceneView& view, std::size_t index, ClockUs 
                    {s.transform.translation, s.transform.rotation, s.transform.scale},
                    s.interpolation,
                    s.visible,
+                   s.show_skeleton,
                    s.spin_rad_s,
                    player_state(view, index, now_us),
                    {},
-                   {},
+                   joint_states(*actor.model),
+                   weight_names(*actor.model),
                    actor.model->vertex_count(),
                    actor.model->mesh ? actor.model->mesh->triangle_count() : 0};
   for (const model::ClipPtr& clip : actor.clips) state.clips.push_back(clip_state(*clip));

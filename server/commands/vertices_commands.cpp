@@ -44,17 +44,13 @@ Result<SampleResult> sample(const SampleParams& p, const QueryContext& context) 
   const stage::SceneViewPtr view = context.view->find(scene_or_main(p.scene));
   if (!view) return no_such_scene(scene_or_main(p.scene));
   TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*view->scene, p.actor));
-  TWEEND_ASSIGN(const model::ClipPtr clip, find_clip(*actor, p.clip, view));
   if (!actor->model->mesh) return no_mesh(*actor);
-  const stage::ActorShow now = stage::show_actor(actor, *view->find_player(actor->name), context.now_us);
-  // Without a time: what is shown now; of another clip than the player is on, that clip at the same time.
-  const bool as_shown = !p.time && clip == now.clip;
-  const double time_s = std::clamp(p.time.value_or(now.time_s), 0.0, clip->duration_s());
+  TWEEND_ASSIGN(const Moment moment, moment_of(actor, p.clip, p.time, view, context.now_us));
   const std::size_t count = actor->model->vertex_count();
-  SampleResult result{time_s, count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
-  const model::Shown shown = as_shown ? now.shown : model::shown_clip(clip, time_s);
-  TWEEND_TRY(model::Evaluator().vertices(*actor, shown, {result.positions, result.normals, {}}));
-  if (p.indices) result.indices = std::vector<std::uint32_t>(actor->model->mesh->indices().begin(), actor->model->mesh->indices().end());
+  SampleResult result{moment.time_s, count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
+  TWEEND_TRY(model::Evaluator().vertices(*actor, moment.shown, {result.positions, result.normals, {}}));
+  if (p.indices)
+    result.indices = std::vector<std::uint32_t>(actor->model->mesh->indices().begin(), actor->model->mesh->indices().end());
   return result;
 }
 

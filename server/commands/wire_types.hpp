@@ -106,6 +106,22 @@ struct TransformParams {
   }
 };
 
+/// A joint as `scene.describe` and the layout of a pose stream tell it.
+struct JointState {
+  static constexpr std::string_view kName = "Joint";
+  std::string name;
+  std::optional<std::string> parent;
+  static void describe(FieldList<JointState>& f) {
+    f.add<&JointState::name>("name", "Its name.");
+    f.add<&JointState::parent>("parent", "The parent's name; a root has none.");
+  }
+};
+
+/// In the skeleton's order.
+[[nodiscard]] std::vector<JointState> joint_states(const model::Model& model);
+/// Names of the morph targets.
+[[nodiscard]] std::vector<std::string> weight_names(const model::Model& model);
+
 /// A player as `playback.*` and `scene.describe` tell it.
 struct PlayerState {
   static constexpr std::string_view kName = "Player";
@@ -151,9 +167,21 @@ struct PlayersResult {
 [[nodiscard]] Error no_such_actor(const model::Scene& scene, const std::string& actor);
 /// What asks for vertices of an actor that is a skeleton alone.
 [[nodiscard]] Error no_mesh(const model::Actor& actor);
+/// What asks for the pose of an actor that has no joints.
+[[nodiscard]] Error no_skeleton(const model::Actor& actor);
 [[nodiscard]] Error no_such_clip(const model::Actor& actor, const std::string& clip);
 /// `actor?`: the named one, or the only one.
 [[nodiscard]] Result<model::ActorPtr> find_actor(const model::Scene& scene, const std::optional<std::string>& actor);
+/// What `*.sample` looks at.
+struct Moment {
+  double time_s = 0.0;  ///< of the clip
+  model::Shown shown;
+};
+/// `clip?` and `time?`: that clip at that time, clamped to it. Without a time: what is shown now; of another clip than the
+/// player is on, that clip at the player's time.
+[[nodiscard]] Result<Moment> moment_of(const model::ActorPtr& actor, const std::optional<std::string>& clip,
+                                       std::optional<double> time_s, const stage::SceneViewPtr& view, ClockUs now_us);
+
 /// `clip?`: the named one, or the one that the published player is on.
 [[nodiscard]] Result<model::ClipPtr> find_clip(const model::Actor& actor, const std::optional<std::string>& clip,
                                                const stage::SceneViewPtr& view);

@@ -21,7 +21,11 @@ ClipPtr Actor::find_clip(std::string_view clip) const noexcept {
 }
 
 animation::Interpolation effective_interpolation(const Actor& actor, const Clip& clip, std::size_t key) noexcept {
-  if (clip.keyframes[key].interpolation) return *clip.keyframes[key].interpolation;
+  const Keyframe& keyframe = clip.keyframes[key];
+  if (keyframe.interpolation) return *keyframe.interpolation;
+  if (keyframe.pose && !keyframe.pose->values().empty()) {
+    if (const auto mode = clip.mode_of(keyframe.pose->values().front().channel)) return *mode;
+  }
   if (actor.settings.interpolation) return *actor.settings.interpolation;
   return clip.settings.interpolation.value_or(animation::Interpolation::Linear);
 }

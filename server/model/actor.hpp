@@ -61,7 +61,8 @@ struct Actor {
 
 using ActorPtr = std::shared_ptr<const Actor>;
 
-/// The mode towards the next keyframe: the keyframe's, else the actor's, else the clip's, else linear.
+/// The mode towards the next keyframe: the keyframe's, else that of the (first) track it keys, else the actor's, else the
+/// clip's, else linear.
 [[nodiscard]] animation::Interpolation effective_interpolation(const Actor& actor, const Clip& clip, std::size_t key) noexcept;
 
 /// Which keyframes of `clip` make what it shows at `time_s` (clamped to the clip). Precondition: there is a keyframe.

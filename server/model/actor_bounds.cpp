@@ -65,9 +65,9 @@ glm::vec3 transformed(const animation::Affine& m, const glm::vec3& p) noexcept {
 void add_box(const animation::Affine& matrix, const Bounds& box, float margin, Hull& hull) {
   if (box.min.x > box.max.x) return;  // of a joint that moves nothing
   for (int i = 0; i < 8; ++i) {
-    hull.add(transformed(matrix, {(i & 1) != 0 ? box.max.x + margin : box.min.x - margin,
-                                  (i & 2) != 0 ? box.max.y + margin : box.min.y - margin,
-                                  (i & 4) != 0 ? box.max.z + margin : box.min.z - margin}));
+    hull.add(transformed(
+        matrix, {(i & 1) != 0 ? box.max.x + margin : box.min.x - margin, (i & 2) != 0 ? box.max.y + margin : box.min.y - margin,
+                 (i & 4) != 0 ? box.max.z + margin : box.min.z - margin}));
   }
 }
 

@@ -15,14 +15,6 @@ struct Track {
   std::vector<animation::KeyMode> modes;
 };
 
-std::optional<animation::Interpolation> mode_of(const ChannelModesPtr& modes, const animation::Channel& channel) {
-  if (!modes) return std::nullopt;
-  const auto at = std::lower_bound(modes->begin(), modes->end(), channel,
-                                   [](const ChannelMode& m, const animation::Channel& c) { return m.channel < c; });
-  if (at == modes->end() || at->channel != channel) return std::nullopt;
-  return at->interpolation;
-}
-
 std::map<animation::Channel, Track> gather(const Clip& clip) {
   std::map<animation::Channel, Track> tracks;
   for (std::size_t k = 0; k < clip.keyframes.size(); ++k) {
@@ -36,7 +28,7 @@ std::map<animation::Channel, Track> gather(const Clip& clip) {
       const KeyedTangents none;
       track.in_tangents.push_back((tangents.empty() ? none : tangents[i]).in);
       track.out_tangents.push_back((tangents.empty() ? none : tangents[i]).out);
-      const auto of_channel = mode_of(clip.channel_modes, values[i].channel);
+      const auto of_channel = clip.mode_of(values[i].channel);
       track.modes.push_back({keyframe.interpolation ? keyframe.interpolation : of_channel, keyframe.easing});
     }
   }
@@ -59,6 +51,14 @@ animation::TrackSet pack(const Clip& clip, const Skeleton& skeleton) {
 ClipType Clip::type() const noexcept {
   if (keyframes.empty()) return declared_type;
   return keyframes.front().vertices ? ClipType::Vertex : ClipType::Skeletal;
+}
+
+std::optional<animation::Interpolation> Clip::mode_of(const animation::Channel& channel) const noexcept {
+  if (!channel_modes) return std::nullopt;
+  const auto at = std::lower_bound(channel_modes->begin(), channel_modes->end(), channel,
+                                   [](const ChannelMode& m, const animation::Channel& c) { return m.channel < c; });
+  if (at == channel_modes->end() || at->channel != channel) return std::nullopt;
+  return at->interpolation;
 }
 
 const animation::TrackSet& Clip::tracks(const Skeleton& skeleton) const {

@@ -73,6 +73,8 @@ struct Clip {
   [[nodiscard]] std::optional<std::size_t> index_of(KeyframeId id) const noexcept;
   /// Where a keyframe at `time_s` would stand.
   [[nodiscard]] std::size_t place_of(double time_s) const noexcept;
+  /// What an imported track says of its keys; empty: nothing.
+  [[nodiscard]] std::optional<animation::Interpolation> mode_of(const animation::Channel& channel) const noexcept;
   /// The keyframes of a skeletal clip as tracks; packed when first asked for, which takes time in proportion to all keyed
   /// values. Safe from any thread. Precondition: always the same skeleton, that of the actor.
   [[nodiscard]] const animation::TrackSet& tracks(const Skeleton& skeleton) const;

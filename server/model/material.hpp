@@ -49,9 +49,9 @@ struct Material {
   ImagePtr base_color_texture;              ///< may be null
   TextureWrap wrap_u = TextureWrap::Repeat;
   TextureWrap wrap_v = TextureWrap::Repeat;
-  float alpha = 1.0F;                  ///< multiplies the texture's
-  std::optional<float> alpha_cutoff{}; ///< what is more transparent is not drawn; empty: all is, opaque
-  bool unlit = false;                  ///< shows its colour as it is
+  float alpha = 1.0F;                   ///< multiplies the texture's
+  std::optional<float> alpha_cutoff{};  ///< what is more transparent is not drawn; empty: all is, opaque
+  bool unlit = false;                   ///< shows its colour as it is
 };
 
 /// A run of a mesh's triangles that show one material.

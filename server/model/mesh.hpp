@@ -20,7 +20,8 @@ class Mesh {
   /// @param indices       shape [triangles × 3], counter-clockwise fronts, each < vertex_count
   /// @param texcoords     shape [vertex_count × 2], v upwards as in OBJ files; empty: none
   /// @param surface       its parts cover all indices in order and name materials that are there; or it is empty
-  /// @param colors        shape [vertex_count × 4], linear red green blue alpha, 0 to 1; multiplies the base colour; empty: none
+  /// @param colors        shape [vertex_count × 4], linear red green blue alpha, 0 to 1; multiplies the base colour; empty:
+  /// none
   /// @return InvalidParams naming the first bad index, part or the wrong length
   [[nodiscard]] static Result<std::shared_ptr<const Mesh>> make(std::size_t vertex_count, std::vector<std::uint32_t> indices,
                                                                 std::vector<float> texcoords = {}, Surface surface = {},

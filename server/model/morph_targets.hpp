@@ -14,7 +14,7 @@ namespace tweend::model {
 
 /// How one weight displaces a run of a mesh's vertices.
 struct MorphTarget {
-  std::string name;            ///< unique among its actor's targets, verbatim UTF-8
+  std::string name;             ///< unique among its actor's targets, verbatim UTF-8
   float default_weight = 0.0F;  ///< where nothing is keyed
   std::size_t first_vertex = 0;
   std::vector<float> positions;  ///< displacements at weight 1, shape [run × 3], the mesh's space, metres

@@ -33,8 +33,7 @@ Status settle(std::span<const std::uint16_t> joints, std::span<float> weights, s
                   fmt::format("expected joints below {} of the skin, found {} at vertex {}", entries, joints[i], vertex));
     }
     if (!(weights[i] >= 0.0F) || !std::isfinite(weights[i])) {
-      return fail(ErrorCode::InvalidParams,
-                  fmt::format("expected weights >= 0, found {} at vertex {}", weights[i], vertex));
+      return fail(ErrorCode::InvalidParams, fmt::format("expected weights >= 0, found {} at vertex {}", weights[i], vertex));
     }
     sum += weights[i];
   }

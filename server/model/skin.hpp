@@ -16,8 +16,8 @@ namespace tweend::model {
 
 /// A matrix that moves vertices: a joint of a skin, or a node that carries a mesh of its own.
 struct SkinEntry {
-  std::uint32_t joint = 0;               ///< in the skeleton's given order
-  animation::Affine joint_from_mesh{};   ///< the inverse bind matrix; identity for the mesh of a node
+  std::uint32_t joint = 0;              ///< in the skeleton's given order
+  animation::Affine joint_from_mesh{};  ///< the inverse bind matrix; identity for the mesh of a node
 };
 
 /// How the joints of a skeleton move the vertices of a mesh. A mesh that hangs on a node is one whose vertices follow that one

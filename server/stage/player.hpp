@@ -48,6 +48,7 @@ struct Player {
   double anchor_phase_s = 0.0;
   double anchor_played_s = 0.0;
   std::int64_t anchor_wraps = 0;
+  model::PoseKeyPtr live;   ///< a live pose over what the clips show; null: none
   std::uint64_t jumps = 0;  ///< seeks, stops, clip changes: breaks in what is shown
 
   bool operator==(const Player&) const = default;

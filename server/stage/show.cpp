@@ -23,8 +23,10 @@ ActorShow show_actor(const model::ActorPtr& actor, const Player& player, ClockUs
   const model::ClipPtr clip = clip_of(*actor, player);
   const PlayRange range = player.range_of(*clip);
   const PlayerReading reading = player.read(range, at_us);
-  ActorShow show{actor, clip, reading.time_s, model::shown_clip(clip, reading.time_s),
-                 actor->settings.spin_rad_s * reading.played_s, false, false, player.jumps << 32U};
+  ActorShow show{
+      actor, clip,  reading.time_s,     model::shown_clip(clip, reading.time_s), actor->settings.spin_rad_s * reading.played_s,
+      false, false, player.jumps << 32U};
+  show.shown.live = player.live;
   show.moving = reading.playing && range.length_s() > 0.0 && player.speed != 0.0;
   show.turning = reading.playing && actor->settings.spin_rad_s != 0.0;
   show.continuity += static_cast<std::uint64_t>(reading.wraps);

@@ -79,8 +79,8 @@ TEST(BuildObjModel, PolygonsAreFannedFromTheirFirstCorner) {
 TEST(BuildObjModel, NormalsMayBeNumberedAfreshInEachFrame) {
   const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
   const ObjModel model = must_build({head + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n",
-                                          head + "vn 0 1 0\nvn 0 0 -1\nf 1//2 2//2 3//2\nf 1//1 3//1 4//1\n",
-                                          head + "vn 0 -1 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n"});
+                                     head + "vn 0 1 0\nvn 0 0 -1\nf 1//2 2//2 3//2\nf 1//1 3//1 4//1\n",
+                                     head + "vn 0 -1 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n"});
   ASSERT_EQ(model.mesh->vertex_count(), 6U);
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2, 3, 4, 5));
   const auto normal = [&](std::size_t key, std::size_t vertex) { return row(model.keys[key].vertices->normals(), vertex); };
@@ -131,7 +131,7 @@ TEST(BuildObjModel, EveryCornerKeepsItsOwnAttributesInEveryFrame) {
 TEST(BuildObjModel, TexcoordsComeFromTheFirstFile) {
   const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
   const ObjModel model = must_build({head + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n",
-                                          head + "vt 0.25 0.25\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n", head + "f 1 2 3\nf 1 3 4\n"});
+                                     head + "vt 0.25 0.25\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n", head + "f 1 2 3\nf 1 3 4\n"});
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2, 3, 2, 4)) << "v 1 is split by its two texture coordinates";
   EXPECT_THAT(model.mesh->texcoords(), ElementsAre(0, 0, 1, 0, 1, 1, 0.5F, 0.5F, 0, 1));
 }

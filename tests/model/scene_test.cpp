@@ -37,7 +37,8 @@ ClipPtr clip_of(std::string name, std::vector<double> times_s, const std::vector
 }
 
 Actor actor_of(VertexKeyPtr rest, std::vector<ClipPtr> clips, ActorSettings settings = {}) {
-  return {"a", "mesh", triangle(), std::move(rest), std::move(settings), std::move(clips)};
+  auto model = std::make_shared<const Model>(Model{triangle(), std::move(rest), {}, {}, {}});
+  return {"a", "mesh", std::move(model), std::move(settings), std::move(clips), {}};
 }
 
 Scene scene_of(const std::vector<Actor>& actors) {

@@ -103,7 +103,8 @@ class RandomChanges {
   }
   Change add_keyframe(const Actor& actor, const Clip& clip) {
     const model::KeyframeId id = ++last_id_;
-    return SetKeyframe{actor.name, clip.name, id, TimedKeyframe{free_time(), {id, {}, {}, square_at(*actor.model->mesh, 7.0F)}}};
+    return SetKeyframe{actor.name, clip.name, id,
+                       TimedKeyframe{free_time(), {id, {}, {}, square_at(*actor.model->mesh, 7.0F)}}};
   }
 
   std::mt19937 random_;

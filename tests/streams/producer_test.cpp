@@ -47,8 +47,8 @@ std::vector<float> vertices_at(const stage::SceneViewPtr& view, const std::strin
   const model::ActorPtr at = view->scene->find_actor(actor);
   std::vector<float> block(6 * at->model->mesh->vertex_count());
   const std::span<float> out(block);
-  EXPECT_TRUE(
-      model::Evaluator().vertices(*at, model::shown_clip(at->clips[0], time_s), {out.first(block.size() / 2), out.subspan(block.size() / 2), {}}));
+  EXPECT_TRUE(model::Evaluator().vertices(*at, model::shown_clip(at->clips[0], time_s),
+                                          {out.first(block.size() / 2), out.subspan(block.size() / 2), {}}));
   return block;
 }
 
