@@ -61,7 +61,7 @@ bench::BareScene bare_scene(const stage::SceneView& view, render::Size size) {
   const model::Light& light = settings.light;
   return {static_cast<int>(size.width),
           static_cast<int>(size.height),
-          actor.mesh->indices(),
+          actor.model->mesh->indices(),
           {keyframes[0].vertices->block(), keyframes[1].vertices->block()},
           model::clip_from_view(settings.camera, aspect) * model::view_from_world(settings.camera),
           settings.camera.eye,

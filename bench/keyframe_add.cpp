@@ -131,7 +131,8 @@ double transaction_vs_copy(const model::MeshPtr& mesh) {
     clip.times_s.push_back(i);
     clip.keyframes.push_back({i + 1, {}, {}, make_key(*mesh, wave(0.01 * i))});
   }
-  model::Actor actor{"a", "mesh", mesh, clip.keyframes.front().vertices, {}, {std::make_shared<const model::Clip>(clip)}};
+  const auto model = std::make_shared<const model::Model>(model::Model{mesh, clip.keyframes.front().vertices, {}, {}, {}});
+  model::Actor actor{"a", "mesh", model, {}, {std::make_shared<const model::Clip>(clip)}, {}};
   model::Scene scene;
   scene.next_keyframe = kKeys + 1;
   scene.actors.push_back(std::make_shared<const model::Actor>(std::move(actor)));

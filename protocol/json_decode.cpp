@@ -203,6 +203,8 @@ class Decoder {
       }
       case Kind::List:
         return list_into(j, type, out, path);
+      case Kind::Entries:
+        return entries_into(j, type, out, path);
       case Kind::Value:
         if (!j.is_object()) return wrong(path, "an object", j);
         *static_cast<JsonValue*>(out) = part_of(whole_, j);
@@ -219,6 +221,14 @@ class Decoder {
     if (!j.is_array()) return wrong(path, "an array", j);
     for (std::size_t i = 0; i < j.size(); ++i) {
       TWEEND_TRY(into(j[i], *type.element, {}, type.emplace(out), fmt::format("{}[{}]", path, i)));
+    }
+    return {};
+  }
+
+  Status entries_into(const json& j, const TypeInfo& type, void* out, const std::string& path) const {
+    if (!j.is_object()) return wrong(path, "an object", j);
+    for (const auto& [name, value] : j.items()) {
+      TWEEND_TRY(into(value, *type.element, {}, type.emplace_named(out, name), fmt::format("{}.{}", path, name)));
     }
     return {};
   }

@@ -166,6 +166,7 @@ void encode(const TypeInfo& type, const void* value, std::string& out) {
     case Kind::Json:
       out += *static_cast<const JsonText*>(value)->text;
       return;
+    case Kind::Entries:
     case Kind::Value:
       out += "{}";  // parameters only
       return;

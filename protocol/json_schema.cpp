@@ -79,6 +79,8 @@ ordered_json schema_of(const TypeInfo& type, const Range& range) {
       return {{"type", "array"}, {"items", schema_of(*type.element, {})}};
     case Kind::Map:
       return {{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
+    case Kind::Entries:
+      return {{"type", "object"}, {"additionalProperties", schema_of(*type.element, {})}};
     case Kind::Value:
     case Kind::Json:
       return {{"type", "object"}};

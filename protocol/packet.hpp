@@ -12,6 +12,11 @@ namespace tweend::protocol {
 /// What a stream packet carries (docs/PROTOCOL.md, section 6).
 enum class PacketKind : std::uint8_t { Pose = 1, Vertices = 2, Frame = 3 };
 
+/// Pose payload: for each joint in the layout's order translation xyz, rotation xyzw, scale xyz as float32, local space; then
+/// the morph weights, float32; little-endian.
+inline constexpr std::uint8_t kPoseF32 = 0;
+inline constexpr std::size_t kFloatsPerJoint = 10;
+
 /// Vertices payload: n × 3 float32 positions, then n × 3 float32 normals, little-endian, model space.
 inline constexpr std::uint8_t kVerticesF32 = 0;
 

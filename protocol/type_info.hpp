@@ -14,6 +14,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "protocol/json_value.hpp"
@@ -43,9 +44,10 @@ enum class Kind : std::uint8_t {
   Object,
   Optional,  ///< a field that may be left out; inside another Optional: a value that may be null
   List,
-  Map,    ///< std::map<std::string, double>
-  Value,  ///< any JSON object, decoded later
-  Json,   ///< JSON text made elsewhere (results only)
+  Map,      ///< std::map<std::string, double>
+  Entries,  ///< protocol::Entries<E> (parameters only)
+  Value,    ///< any JSON object, decoded later
+  Json,     ///< JSON text made elsewhere (results only)
 };
 
 struct FieldInfo;
@@ -56,9 +58,10 @@ struct TypeInfo {
   std::string_view name;                                  ///< objects: for the schema
   std::vector<FieldInfo> fields;                          ///< objects
   std::vector<std::string_view> enumerators;              ///< enums, in the order of their values from 0
-  const TypeInfo* element = nullptr;                      ///< optionals and lists
+  const TypeInfo* element = nullptr;                      ///< optionals, lists and entries
   std::size_t count = 0;                                  ///< Doubles: how many
   void* (*emplace)(void*) = nullptr;                      ///< optional: engages; list: appends; the new element
+  void* (*emplace_named)(void*, std::string) = nullptr;   ///< entries: appends; the new element
   const void* (*at)(const void*, std::size_t) = nullptr;  ///< optional: null when empty; list: null past the end
   void (*set_enum)(void*, std::size_t) = nullptr;
   std::size_t (*get_enum)(const void*) = nullptr;
@@ -96,6 +99,12 @@ struct Base64Indices {
 /// JSON text that is already made; goes into the answer as it is.
 struct JsonText {
   std::shared_ptr<const std::string> text;
+};
+
+/// An object whose names are the client's to choose, in the order of its names.
+template <class E>
+struct Entries {
+  std::vector<std::pair<std::string, E>> list;
 };
 
 /// A parameter that may also be null, which takes the value away: left out, null, or a value.
@@ -251,6 +260,19 @@ requires(Described<E> || std::is_enum_v<E> || std::is_same_v<E, std::string> || 
     info.at = [](const void* v, std::size_t i) -> const void* {
       const auto& list = *static_cast<const std::vector<E>*>(v);
       return i < list.size() ? &list[i] : nullptr;
+    };
+    return info;
+  }
+};
+
+template <Described E>
+struct Maker<Entries<E>> {
+  static TypeInfo make() {
+    TypeInfo info;
+    info.kind = Kind::Entries;
+    info.element = &type_of<E>();
+    info.emplace_named = [](void* v, std::string name) -> void* {
+      return &static_cast<Entries<E>*>(v)->list.emplace_back(std::move(name), E{}).second;
     };
     return info;
   }

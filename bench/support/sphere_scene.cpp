@@ -58,8 +58,7 @@ stage::SceneViewPtr playing_sphere(const SphereGrid& grid) {
   auto actor = std::make_shared<model::Actor>();
   actor->name = "sphere";
   actor->source = "mesh";
-  actor->mesh = *mesh;
-  actor->rest = clip->keyframes.front().vertices;
+  actor->model = std::make_shared<const model::Model>(model::Model{*mesh, clip->keyframes.front().vertices, {}, {}, {}});
   actor->clips = {clip};
   auto scene = std::make_shared<model::Scene>();
   scene->name = "main";

@@ -19,6 +19,14 @@ void Pose::reset(std::size_t joint_count, std::size_t weight_count) {
   weights_.assign(vectors_for(weight_count), Lanes());
 }
 
+void Pose::assign(const Pose& joints, std::size_t weight_count) {
+  joint_count_ = joints.joint_count_;
+  stride_ = joints.stride_;
+  rows_ = joints.rows_;
+  weight_count_ = weight_count;
+  weights_.assign(vectors_for(weight_count), Lanes());
+}
+
 JointPose Pose::joint(std::size_t joint) const noexcept {
   const auto at = [&](PoseRow wanted) { return row(wanted)[joint]; };
   return {{at(PoseRow::Tx), at(PoseRow::Ty), at(PoseRow::Tz)},

@@ -28,6 +28,8 @@ class Pose {
  public:
   /// All joints at identity, all weights 0. Keeps its memory.
   void reset(std::size_t joint_count, std::size_t weight_count);
+  /// The joints of `joints`, and so many weights of 0. Keeps its memory.
+  void assign(const Pose& joints, std::size_t weight_count);
 
   [[nodiscard]] std::size_t joint_count() const noexcept { return joint_count_; }
   /// Floats in a row, a multiple of kPoseLanes.

@@ -48,6 +48,18 @@ Error too_many_bytes(std::string_view name, std::size_t max_bytes) {
               fmt::format("{}: expected at most {} bytes of files, found more", quoted_name(name), max_bytes));
 }
 
+/// The one clip of an OBJ file or sequence, a keyframe for each file.
+model::ImportedModel imported(ObjModel obj, const ImportOptions& options) {
+  model::Clip clip;
+  clip.name = "default";
+  for (const ObjKey& key : obj.keys) {
+    clip.times_s.push_back(key.frame / options.fps);
+    clip.keyframes.push_back({0, {}, {}, key.vertices, nullptr});
+  }
+  auto model = std::make_shared<const model::Model>(model::Model{std::move(obj.mesh), obj.keys.front().vertices, {}, {}, {}});
+  return {std::move(obj.source), std::move(model), {std::move(clip)}, std::move(obj.warnings)};
+}
+
 }  // namespace
 
 AssetLibrary::AssetLibrary(std::vector<AssetRoot> roots, Limits limits) : roots_(std::move(roots)), limits_(limits) {}
@@ -61,18 +73,18 @@ Result<std::vector<AssetInfo>> AssetLibrary::list() const {
   return assets;
 }
 
-Result<ImportedModel> AssetLibrary::import(std::string_view name) const {
+Result<model::ImportedModel> AssetLibrary::import(std::string_view name, const ImportOptions& options) const {
   try {
-    return find_and_import(name);
+    return find_and_import(name, options);
   } catch (const std::bad_alloc&) {
     return fail(ErrorCode::Unavailable, fmt::format("there is not enough memory to import {}", quoted_name(name)));
   }
 }
 
-Result<ImportedModel> AssetLibrary::find_and_import(std::string_view name) const {
+Result<model::ImportedModel> AssetLibrary::find_and_import(std::string_view name, const ImportOptions& options) const {
   bool other_folder = false;  // a folder of that name that is no sequence: a later root may hold one that is
   for (const AssetRoot& root : roots_) {
-    auto imported = import_from(root, name);
+    auto imported = import_from(root, name, options);
     if (!imported && imported.error().code == ErrorCode::NotFound) continue;
     if (!imported) return imported.error();
     if (imported->has_value()) return std::move(**imported);
@@ -84,29 +96,30 @@ Result<ImportedModel> AssetLibrary::find_and_import(std::string_view name) const
 }
 
 /// Nothing where `name` is a folder, but not a sequence.
-Result<std::optional<ImportedModel>> AssetLibrary::import_from(const AssetRoot& root, std::string_view name) const {
+Result<std::optional<model::ImportedModel>> AssetLibrary::import_from(const AssetRoot& root, std::string_view name,
+                                                                      const ImportOptions& options) const {
   TWEEND_ASSIGN(const AssetEntry entry, root.find(name));
   if (entry.directory) {
     TWEEND_ASSIGN(std::vector<AssetEntry> entries, root.list_folder(name));
     AssetFolder folder = sort_entries(name, std::move(entries));
-    if (folder.members.empty()) return std::optional<ImportedModel>();
-    TWEEND_ASSIGN(ImportedModel sequence, import_sequence(root, name, std::move(folder.members)));
-    return std::optional(std::move(sequence));
+    if (folder.members.empty()) return std::optional<model::ImportedModel>();
+    TWEEND_ASSIGN(ObjModel sequence, import_sequence(root, name, std::move(folder.members)));
+    return std::optional(imported(std::move(sequence), options));
   }
   if (!has_extension(name, ".obj")) return fail(ErrorCode::BadAsset, fmt::format("{}, found {}", kExpected, quoted_name(name)));
-  TWEEND_ASSIGN(ImportedModel model, import_file(root, name));
-  return std::optional(std::move(model));
+  TWEEND_ASSIGN(ObjModel model, import_file(root, name));
+  return std::optional(imported(std::move(model), options));
 }
 
-Result<ImportedModel> AssetLibrary::import_file(const AssetRoot& root, std::string_view name) const {
+Result<ObjModel> AssetLibrary::import_file(const AssetRoot& root, std::string_view name) const {
   TWEEND_ASSIGN(const std::string text, root.read_file(name, limits_.asset_bytes));
   TWEEND_ASSIGN(const ObjFile file, read_obj(text, std::string(name), limits_));
   constexpr std::int64_t kFrame = 0;
   return build(root, name, {&file, 1}, {&kFrame, 1}, limits_.asset_bytes - text.size());
 }
 
-Result<ImportedModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
-                                                    std::vector<SequenceFile> members) const {
+Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
+                                               std::vector<SequenceFile> members) const {
   TWEEND_ASSIGN(members, order_sequence(std::move(members)));
   if (total_bytes(members) > limits_.asset_bytes) return too_many_bytes(name, limits_.asset_bytes);
   if (members.size() > limits_.keyframes_per_clip) {
@@ -127,10 +140,10 @@ Result<ImportedModel> AssetLibrary::import_sequence(const AssetRoot& root, std::
   return build(root, name, files, frames, bytes_left);
 }
 
-Result<ImportedModel> AssetLibrary::build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
-                                          std::span<const std::int64_t> frames, std::size_t bytes_left) const {
+Result<ObjModel> AssetLibrary::build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
+                                     std::span<const std::int64_t> frames, std::size_t bytes_left) const {
   TWEEND_ASSIGN(ObjMaterials found, load_obj_materials(root, files.front(), bytes_left, limits_));
-  TWEEND_ASSIGN(ImportedModel model, build_obj_model(std::string(name), files, frames, limits_, found.materials));
+  TWEEND_ASSIGN(ObjModel model, build_obj_model(std::string(name), files, frames, limits_, found.materials));
   model.warnings = std::move(found.warnings);
   return model;
 }

@@ -12,8 +12,14 @@
 #include "server/assets/obj_sequence.hpp"
 #include "server/base/limits.hpp"
 #include "server/base/result.hpp"
+#include "server/model/model.hpp"
 
 namespace tweend::assets {
+
+/// What is asked of an import.
+struct ImportOptions {
+  double fps = 24.0;  ///< of an OBJ sequence: how many frames make a second
+};
 
 struct AssetInfo {
   std::string name;         ///< the path under its assets folder
@@ -43,17 +49,18 @@ class AssetLibrary {
   /// Reads the asset anew. What its files name that isn't there is told by the model's warnings.
   /// @return NotFound; BadAsset naming file and line; Limit (Limits::asset_bytes, texture_pixels,
   ///         vertices_per_actor, keyframes_per_clip); Unavailable if memory runs out
-  [[nodiscard]] Result<ImportedModel> import(std::string_view name) const;
+  [[nodiscard]] Result<model::ImportedModel> import(std::string_view name, const ImportOptions& options = {}) const;
 
  private:
-  [[nodiscard]] Result<ImportedModel> find_and_import(std::string_view name) const;
-  [[nodiscard]] Result<std::optional<ImportedModel>> import_from(const AssetRoot& root, std::string_view name) const;
-  [[nodiscard]] Result<ImportedModel> import_file(const AssetRoot& root, std::string_view name) const;
-  [[nodiscard]] Result<ImportedModel> import_sequence(const AssetRoot& root, std::string_view name,
-                                                      std::vector<SequenceFile> members) const;
+  [[nodiscard]] Result<model::ImportedModel> find_and_import(std::string_view name, const ImportOptions& options = {}) const;
+  [[nodiscard]] Result<std::optional<model::ImportedModel>> import_from(const AssetRoot& root, std::string_view name,
+                                                                        const ImportOptions& options) const;
+  [[nodiscard]] Result<ObjModel> import_file(const AssetRoot& root, std::string_view name) const;
+  [[nodiscard]] Result<ObjModel> import_sequence(const AssetRoot& root, std::string_view name,
+                                                 std::vector<SequenceFile> members) const;
   /// @param bytes_left  for the side files of `files`
-  [[nodiscard]] Result<ImportedModel> build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
-                                            std::span<const std::int64_t> frames, std::size_t bytes_left) const;
+  [[nodiscard]] Result<ObjModel> build(const AssetRoot& root, std::string_view name, std::span<const ObjFile> files,
+                                       std::span<const std::int64_t> frames, std::size_t bytes_left) const;
 
   std::vector<AssetRoot> roots_;
   Limits limits_;

@@ -131,8 +131,8 @@ Error asset_error(std::string_view name, const Error& error) {
 
 }  // namespace
 
-Result<ImportedModel> build_obj_model(std::string source, std::span<const ObjFile> files, std::span<const std::int64_t> frames,
-                                      const Limits& limits, std::span<const std::optional<model::Material>> materials) {
+Result<ObjModel> build_obj_model(std::string source, std::span<const ObjFile> files, std::span<const std::int64_t> frames,
+                                 const Limits& limits, std::span<const std::optional<model::Material>> materials) {
   TWEEND_TRY(check_input(files, frames, limits));
   const VertexClasses vertices = find_vertices(files);
   if (vertices.count() > limits.vertices_per_actor) {
@@ -152,7 +152,7 @@ Result<ImportedModel> build_obj_model(std::string source, std::span<const ObjFil
   auto mesh =
       model::Mesh::make(vertices.count(), std::move(indices), gather_texcoords(first, corners), make_surface(first, materials));
   if (!mesh) return asset_error(source, mesh.error());
-  ImportedModel imported{std::move(source), std::move(*mesh), {}, {}};
+  ObjModel imported{std::move(source), std::move(*mesh), {}, {}};
   imported.keys.reserve(files.size());
   for (std::size_t i = 0; i < files.size(); ++i) {
     TWEEND_ASSIGN(const std::vector<float> normals, gather_normals(files[i], corners, v_indices));

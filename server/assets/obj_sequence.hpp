@@ -15,16 +15,16 @@
 
 namespace tweend::assets {
 
-struct ImportedKey {
+struct ObjKey {
   double frame = 0.0;  ///< as numbered by the file; whole
   model::VertexKeyPtr vertices;
 };
 
-/// A mesh and its poses, as an asset holds them; how fast frames follow each other is the importer's to say.
-struct ImportedModel {
+/// A mesh and its poses, as OBJ files hold them; how fast frames follow each other is the importer's to say.
+struct ObjModel {
   std::string source;  ///< the asset's name
   model::MeshPtr mesh;
-  std::vector<ImportedKey> keys;      ///< at least one, in strictly ascending frame order
+  std::vector<ObjKey> keys;           ///< at least one, in strictly ascending frame order
   std::vector<std::string> warnings;  ///< a line each: what the files name that isn't there, and was passed over
 };
 
@@ -43,9 +43,9 @@ struct ImportedModel {
 /// @param materials  shape [material names of the first file], or empty: none is known
 /// @return BadAsset where two files' faces don't agree (see check_same_topology) or numbers can't be used;
 ///         Limit if there are too many vertices or files
-[[nodiscard]] Result<ImportedModel> build_obj_model(std::string source, std::span<const ObjFile> files,
-                                                    std::span<const std::int64_t> frames, const Limits& limits,
-                                                    std::span<const std::optional<model::Material>> materials = {});
+[[nodiscard]] Result<ObjModel> build_obj_model(std::string source, std::span<const ObjFile> files,
+                                               std::span<const std::int64_t> frames, const Limits& limits,
+                                               std::span<const std::optional<model::Material>> materials = {});
 
 /// What the name of a sequence's file says: "NAME_000010.obj" is {NAME, 10}.
 struct SequenceMember {

@@ -5,6 +5,7 @@
 #include "server/base/log.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/edit_helpers.hpp"
+#include "server/commands/pose_types.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -27,6 +28,7 @@ struct ActorAddParams : EditTarget {
   protocol::Name actor;
   std::optional<std::string> asset;
   std::optional<MeshParams> mesh;
+  std::optional<SkeletonParams> skeleton;
   std::optional<double> fps;
   std::optional<bool> closed;
   std::optional<double> duration;
@@ -36,8 +38,9 @@ struct ActorAddParams : EditTarget {
     using T = ActorAddParams;
     add_edit_fields(f);
     f.add<&T::actor>("actor", "The new actor's name.");
-    f.add<&T::asset>("asset", "An asset's name (asset.list has them); or give mesh.");
-    f.add<&T::mesh>("mesh", "A mesh; its clip `default` is empty at first. Or give asset.");
+    f.add<&T::asset>("asset", "An asset's name (asset.list has them); or give mesh or skeleton.");
+    f.add<&T::mesh>("mesh", "A mesh; its clip `default` is empty at first.");
+    f.add<&T::skeleton>("skeleton", "A skeleton; its clip `default` is empty at first.");
     f.add<&T::fps>("fps", "Frames a second of an OBJ sequence; 24 if left out.",
                    {.min = 0.0, .max = 10'000.0, .min_excluded = true});
     f.add<&T::closed>("closed", "Whether the clip blends from its last keyframe back to the first.");
@@ -46,11 +49,18 @@ struct ActorAddParams : EditTarget {
     f.add<&T::interpolation>("interpolation", "For all its clips, where a keyframe says no other.");
   }
   [[nodiscard]] Status check() const {
-    if (asset.has_value() == mesh.has_value()) {
-      return fail(ErrorCode::InvalidParams, fmt::format("expected asset or mesh, found {}", asset ? "both" : "neither"),
-                  asset ? "mesh" : "asset");
+    const int given = int{asset.has_value()} + int{mesh.has_value()} + int{skeleton.has_value()};
+    if (given != 1) {
+      return fail(ErrorCode::InvalidParams,
+                  fmt::format("expected one of asset, mesh and skeleton, found {}", given == 0 ? "none" : "several"),
+                  given == 0 ? "asset"
+                  : skeleton ? "skeleton"
+                             : "mesh");
     }
-    if (mesh && fps) return fail(ErrorCode::InvalidParams, "expected fps with an OBJ sequence, found it with a mesh", "fps");
+    if (!asset && fps) {
+      return fail(ErrorCode::InvalidParams,
+                  fmt::format("expected fps with an OBJ sequence, found it with a {}", mesh ? "mesh" : "skeleton"), "fps");
+    }
     return {};
   }
 };
@@ -72,20 +82,23 @@ struct ActorAddResult {
   }
 };
 
-struct ActorUpdateParams : EditTarget {
+struct ActorUpdateParams : EditTarget, Timed {
   static constexpr std::string_view kName = "ActorUpdateParams";
   std::optional<std::string> actor;
   std::optional<TransformParams> transform;
   Nullable<Interpolation> interpolation;
   std::optional<bool> visible;
+  std::optional<bool> show_skeleton;
   std::optional<double> spin;
   static void describe(FieldList<ActorUpdateParams>& f) {
     using T = ActorUpdateParams;
     add_edit_fields(f);
+    add_timed_fields(f);
     add_actor_field(f);
     f.add<&T::transform>("transform", "Where it stands; what is left out stays.");
     f.add<&T::interpolation>("interpolation", "For all its clips; null: let them say.");
     f.add<&T::visible>("visible", "Whether it is drawn.");
+    f.add<&T::show_skeleton>("show_skeleton", "Whether joints and bones are drawn over the mesh.");
     f.add<&T::spin>("spin", "Radians a second about +Y while playing.");
   }
 };
@@ -99,23 +112,21 @@ struct ActorRemoveParams : EditTarget {
   }
 };
 
-/// What an asset or a mesh parameter comes to: worked out once, on a worker.
-struct Source {
-  std::string name;
-  model::MeshPtr mesh;
-  model::VertexKeyPtr rest;
-  std::vector<assets::ImportedKey> keys;
-};
-
-Result<Source> import_asset(const std::string& name, const Services& services) {
-  auto imported = services.assets.import(name);
+Result<model::ImportedModel> import_asset(const ActorAddParams& p, const Services& services) {
+  auto imported = services.assets.import(*p.asset, {p.fps.value_or(24.0)});
   if (!imported) return fail(imported.error().code, imported.error().message, "params.asset");
   for (const std::string& warning : imported->warnings) log::warn(warning);
-  model::VertexKeyPtr rest = imported->keys.front().vertices;
-  return Source{std::move(imported->source), std::move(imported->mesh), std::move(rest), std::move(imported->keys)};
+  return imported;
 }
 
-Result<Source> make_mesh(const MeshParams& p, const Services& services) {
+/// One clip without keyframes, for what brings none.
+std::vector<model::Clip> empty_clip() {
+  model::Clip clip;
+  clip.name = "default";
+  return {std::move(clip)};
+}
+
+Result<model::ImportedModel> make_mesh(const MeshParams& p, const Services& services) {
   const std::size_t vertices = p.positions.size() / 3;
   if (p.positions.size() % 3 != 0) {
     return fail(ErrorCode::InvalidParams, fmt::format("expected three numbers a vertex, found {} numbers", p.positions.size()),
@@ -132,20 +143,41 @@ Result<Source> make_mesh(const MeshParams& p, const Services& services) {
   auto rest =
       model::VertexKey::make(**mesh, p.positions, p.normals ? std::span<const float>(*p.normals) : std::span<const float>());
   if (!rest) return fail(rest.error().code, rest.error().message, "params.mesh." + rest.error().path);
-  return Source{"mesh", *mesh, *rest, {}};
+  auto model = std::make_shared<const model::Model>(model::Model{*mesh, *rest, {}, {}, {}});
+  return model::ImportedModel{"mesh", std::move(model), empty_clip(), {}};
 }
 
-Result<model::Clip> make_clip(const ActorAddParams& p, const Source& source, stage::Transaction& transaction) {
-  model::Clip clip;
-  clip.name = "default";
-  clip.settings = {p.closed.value_or(false), p.duration, {}};
-  const double fps = p.fps.value_or(24.0);
-  for (const assets::ImportedKey& key : source.keys) {
-    clip.times_s.push_back(key.frame / fps);
-    clip.keyframes.push_back({transaction.new_keyframe_id(), {}, {}, key.vertices});
+Result<model::ImportedModel> make_bare_skeleton(const SkeletonParams& p, const Services& services) {
+  TWEEND_ASSIGN(model::SkeletonPtr skeleton, make_skeleton(p, services.limits));
+  auto model = std::make_shared<const model::Model>(model::Model{{}, {}, std::move(skeleton), {}, {}});
+  return model::ImportedModel{"skeleton", std::move(model), empty_clip(), {}};
+}
+
+Result<model::ImportedModel> make_source(const ActorAddParams& p, const Services& services) {
+  if (p.asset) return import_asset(p, services);
+  return p.mesh ? make_mesh(*p.mesh, services) : make_bare_skeleton(*p.skeleton, services);
+}
+
+/// The actor's clips, with ids for their keyframes and what the request says of them.
+Result<std::vector<model::ClipPtr>> make_clips(const ActorAddParams& p, const model::ImportedModel& source,
+                                               EditContext& context) {
+  std::vector<model::ClipPtr> clips;
+  for (const model::Clip& from : source.clips) {
+    const std::size_t most = context.services.limits.keyframes_per_clip;
+    if (from.keyframes.size() > most) {
+      return fail(
+          ErrorCode::Limit,
+          fmt::format("expected at most {} keyframes in a clip, found {} in \"{}\"", most, from.keyframes.size(), from.name),
+          "params.asset");
+    }
+    model::Clip clip = from;
+    clip.settings.closed = p.closed.value_or(clip.settings.closed);
+    if (p.duration) clip.settings.duration_s = p.duration;
+    for (model::Keyframe& keyframe : clip.keyframes) keyframe.id = context.transaction.new_keyframe_id();
+    TWEEND_TRY(check_duration(clip));
+    clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
   }
-  TWEEND_TRY(check_duration(clip));
-  return clip;
+  return clips;
 }
 
 Result<ActorAddResult> add_actor(const ActorAddParams& p, EditContext& context) {
@@ -156,26 +188,18 @@ Result<ActorAddResult> add_actor(const ActorAddParams& p, EditContext& context) 
   if (const std::size_t most = context.services.limits.actors_per_scene; context.scene().actors.size() >= most) {
     return fail(ErrorCode::Limit, fmt::format("expected at most {} actors in a scene, found as many; remove one first", most));
   }
-  const Result<Source>& source = context.once(
-      "source", [&] { return p.asset ? import_asset(*p.asset, context.services) : make_mesh(*p.mesh, context.services); });
+  const Result<model::ImportedModel>& source = context.once("source", [&] { return make_source(p, context.services); });
   if (!source) return source.error();
-  if (source->keys.size() > context.services.limits.keyframes_per_clip) {
-    return fail(ErrorCode::Limit,
-                fmt::format("expected at most {} keyframes in a clip, found {}", context.services.limits.keyframes_per_clip,
-                            source->keys.size()),
-                "params.asset");
-  }
   model::Actor actor;
   actor.name = p.actor.text;
-  actor.source = source->name;
-  actor.mesh = source->mesh;
-  actor.rest = source->rest;
+  actor.source = source->source;
+  actor.model = source->model;
   actor.settings.interpolation = p.interpolation;
   if (p.transform) p.transform->apply_to(actor.settings.transform);
-  TWEEND_ASSIGN(model::Clip clip, make_clip(p, *source, context.transaction));
-  actor.clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
+  TWEEND_ASSIGN(actor.clips, make_clips(p, *source, context));
 
-  ActorAddResult result{actor.name, {"default"}, actor.mesh->vertex_count(), 0, 0};
+  ActorAddResult result{actor.name, {}, actor.model->vertex_count(), actor.model->joint_count(), 0};
+  for (const model::ClipPtr& clip : actor.clips) result.clips.push_back(clip->name);
   context.transaction.apply(stage::SetActor{actor.name, std::make_shared<const model::Actor>(std::move(actor))});
   context.transaction.about({result.actor, {}, {}});
   return result;
@@ -187,6 +211,7 @@ Result<RevisionResult> update_actor(const ActorUpdateParams& p, EditContext& con
   if (p.transform) p.transform->apply_to(settings.transform);
   settings.interpolation = p.interpolation.value_or(settings.interpolation);
   settings.visible = p.visible.value_or(settings.visible);
+  settings.show_skeleton = p.show_skeleton.value_or(settings.show_skeleton);
   settings.spin_rad_s = p.spin.value_or(settings.spin_rad_s);
   context.transaction.apply(stage::SetActorSettings{actor->name, settings});
   context.transaction.about({actor->name, {}, {}});
@@ -203,7 +228,8 @@ Result<RevisionResult> remove_actor(const ActorRemoveParams& p, EditContext& con
 }  // namespace
 
 void add_actor_commands(std::vector<Command>& t) {
-  t.push_back(edit_command<&add_actor>("actor.add", Role::Control, "Add a model, from an asset or a mesh.", Shape::HeavyEdit));
+  t.push_back(edit_command<&add_actor>("actor.add", Role::Control, "Add a model, from an asset, a mesh or a skeleton.",
+                                       Shape::HeavyEdit));
   t.push_back(edit_command<&update_actor>("actor.update", Role::Control, "Move an actor, or change how it is shown."));
   t.push_back(edit_command<&remove_actor>("actor.remove", Role::Control, "Remove an actor."));
 }

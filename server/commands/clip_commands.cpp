@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <memory>
 
 #include "server/commands/command_table.hpp"
@@ -74,11 +76,26 @@ struct ClipCreateResult {
   }
 };
 
-const model::Keyframe* find_in_any_clip(const model::Actor& actor, model::KeyframeId id) {
+struct Found {
+  const model::Clip* clip = nullptr;
+  const model::Keyframe* keyframe = nullptr;
+};
+
+Found find_in_any_clip(const model::Actor& actor, model::KeyframeId id) {
   for (const model::ClipPtr& clip : actor.clips) {
-    if (const auto index = clip->index_of(id)) return &clip->keyframes[*index];
+    if (const auto index = clip->index_of(id)) return {clip.get(), &clip->keyframes[*index]};
   }
-  return nullptr;
+  return {};
+}
+
+/// What is said of the tracks in either; `own` comes first.
+model::ChannelModesPtr joined_modes(const model::ChannelModesPtr& own, const model::ChannelModesPtr& other) {
+  if (!other || own == other) return own;
+  if (!own) return other;
+  std::vector<model::ChannelMode> all;
+  std::set_union(own->begin(), own->end(), other->begin(), other->end(), std::back_inserter(all),
+                 [](const model::ChannelMode& a, const model::ChannelMode& b) { return a.channel < b.channel; });
+  return std::make_shared<const std::vector<model::ChannelMode>>(std::move(all));
 }
 
 /// Fills the clip with those keyframes in that order, evenly spaced: an open cue's last stands at the end, a closed one's
@@ -93,15 +110,20 @@ Status fill_cue(model::Clip& clip, const ClipCreateParams& p, const model::Actor
                 "params.duration");
   }
   for (std::size_t i = 0; i < count; ++i) {
-    const model::Keyframe* key = find_in_any_clip(actor, (*p.keys)[i]);
-    if (key == nullptr) {
+    const Found found = find_in_any_clip(actor, (*p.keys)[i]);
+    if (found.keyframe == nullptr) {
       return fail(ErrorCode::NotFound,
                   fmt::format("expected ids of keyframes of the actor \"{}\", found {}; keyframe.list names them", actor.name,
                               (*p.keys)[i]),
                   fmt::format("params.keys[{}]", i));
     }
+    if (i > 0 && found.clip->type() != clip.type()) {
+      return fail(ErrorCode::InvalidParams, "expected keyframes of one kind, found poses among vertices",
+                  fmt::format("params.keys[{}]", i));
+    }
     clip.times_s.push_back(static_cast<double>(i) * spacing_s);
-    clip.keyframes.push_back(*key);
+    clip.keyframes.push_back(*found.keyframe);
+    clip.channel_modes = joined_modes(clip.channel_modes, found.clip->channel_modes);
     clip.keyframes.back().id = transaction.new_keyframe_id();
   }
   // An open cue's duration is where its last keyframe stands, and grows with it; that of a single one is held.
@@ -119,10 +141,18 @@ Result<ClipCreateResult> create_clip(const ClipCreateParams& p, EditContext& con
     return fail(ErrorCode::Limit,
                 fmt::format("expected at most {} clips an actor, found as many; remove one first", limits.clips_per_actor));
   }
+  if (p.type == WireClipType::Vertex && !actor->model->mesh) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected skeletal: the actor \"{}\" has no mesh", actor->name),
+                "params.type");
+  }
+  if (p.type == WireClipType::Skeletal && !actor->model->skeleton) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected vertex: the actor \"{}\" has no skeleton", actor->name),
+                "params.type");
+  }
   model::Clip clip;
   clip.name = p.clip.text;
   clip.settings = {p.closed.value_or(false), p.duration, p.interpolation};
-  if (p.type) clip.declared_type = model::ClipType::Vertex;
+  if (p.type) clip.declared_type = *p.type == WireClipType::Vertex ? model::ClipType::Vertex : model::ClipType::Skeletal;
   if (p.keys && !p.keys->empty()) {
     if (p.keys->size() > limits.keyframes_per_clip) {
       return fail(ErrorCode::Limit,
@@ -157,6 +187,13 @@ Result<RevisionResult> remove_clip(const ClipRemoveParams& p, EditContext& conte
   if (actor->clips.size() == 1) {
     return fail(ErrorCode::InvalidParams,
                 fmt::format("expected another clip to remain, found \"{}\" to be the only one", clip->name), "params.clip");
+  }
+  for (const model::Layer& layer : actor->layers) {
+    if (layer.clip != clip->name) continue;
+    return fail(ErrorCode::InvalidParams,
+                fmt::format("expected a clip that no layer plays, found \"{}\" in the layer \"{}\"; layer.remove it first",
+                            clip->name, layer.name),
+                "params.clip");
   }
   context.transaction.apply(stage::SetClip{actor->name, clip->name, nullptr});
   context.transaction.about({actor->name, clip->name, {}});

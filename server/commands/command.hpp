@@ -1,6 +1,7 @@
 #pragma once
 
 #include <any>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -106,9 +107,12 @@ struct Command {
   void (*async_query)(const void*, const QueryContext&, AsyncDone<std::string>) = nullptr;
   Result<std::string> (*edit)(const void*, EditContext&) = nullptr;
   const EditTarget& (*target)(const void*) = nullptr;
+  /// Set for what takes at_us.
+  const Timed& (*timed)(const void*) = nullptr;
   void (*scene_edit)(const void*, const Services&, stage::EditOptions, stage::EditDone) = nullptr;
   Result<std::vector<std::size_t>> (*players)(const void*, const stage::PlayersTurn&) = nullptr;
   std::string (*players_scene)(const void*) = nullptr;
+  std::string (*players_answer)(const stage::PlayersAnswer&) = nullptr;
   void (*connection)(const void*, const std::shared_ptr<Conversation>&, const ConnectionDone&) = nullptr;
 
   [[nodiscard]] bool is_edit() const noexcept {
@@ -152,6 +156,9 @@ Command row(std::string_view name, Role role, Shape shape, std::string_view summ
   c.summary = summary;
   c.params = &protocol::type_of<P>();
   c.make_params = []() -> Params { return std::make_shared<P>(); };
+  if constexpr (std::derived_from<P, Timed>) {
+    c.timed = [](const void* p) -> const Timed& { return *static_cast<const P*>(p); };
+  }
   return c;
 }
 
@@ -202,12 +209,20 @@ Command edit_command(std::string_view name, Role role, std::string_view summary,
   return c;
 }
 
-/// `Result<std::vector<std::size_t>> handler(const P&, const stage::PlayersTurn&)`, answering the players concerned.
-template <auto Handler>
+/// `Result<std::vector<std::size_t>> handler(const P&, const stage::PlayersTurn&)`: the players concerned, of which
+/// `playback.changed` tells, and the answer.
+template <auto Handler, class R = PlayersResult>
 Command players_command(std::string_view name, std::string_view summary) {
   using S = detail::Signature<decltype(Handler)>;
   Command c = detail::row<typename S::Request>(name, Role::Control, Shape::Players, summary);
-  c.result = &protocol::type_of<PlayersResult>();
+  c.result = &protocol::type_of<R>();
+  c.players_answer = [](const stage::PlayersAnswer& answer) {
+    if constexpr (std::is_same_v<R, PlayersResult>) {
+      return protocol::encode(players_result(*answer.view, answer.concerned, answer.now_us));
+    } else {
+      return protocol::encode(R{});
+    }
+  };
   c.players = [](const void* p, const stage::PlayersTurn& turn) {
     return Handler(*static_cast<const typename S::Request*>(p), turn);
   };

@@ -4,48 +4,10 @@
 
 #include "server/commands/command_table.hpp"
 #include "server/commands/edit_helpers.hpp"
+#include "server/commands/keyframe_content.hpp"
 
 namespace tweend::commands {
 namespace {
-
-struct VerticesParams {
-  static constexpr std::string_view kName = "Vertices";
-  std::optional<std::vector<float>> positions, normals;
-  std::optional<protocol::Base64Floats> positions_base64, normals_base64;
-  static void describe(FieldList<VerticesParams>& f) {
-    using T = VerticesParams;
-    f.add<&T::positions>("positions", "x, y, z of each vertex, model space, metres.");
-    f.add<&T::normals>("normals", "x, y, z of each vertex; computed if left out.");
-    f.add<&T::positions_base64>("positions_base64", "The same as base64 of little-endian float32.");
-    f.add<&T::normals_base64>("normals_base64", "The same as base64 of little-endian float32.");
-  }
-  [[nodiscard]] Status check() const {
-    if (positions.has_value() == positions_base64.has_value()) {
-      return fail(ErrorCode::InvalidParams,
-                  fmt::format("expected positions or positions_base64, found {}", positions ? "both" : "neither"), "positions");
-    }
-    if (normals && normals_base64)
-      return fail(ErrorCode::InvalidParams, "expected normals or normals_base64, found both", "normals");
-    return {};
-  }
-};
-
-/// What a keyframe can be made of; the parameters of add and update alike.
-struct KeyframeContent : EditTarget {
-  std::optional<std::string> actor;
-  std::optional<std::string> clip;
-  std::optional<double> time;
-  std::optional<VerticesParams> vertices;
-  std::optional<bool> capture;
-  [[nodiscard]] bool captures() const noexcept { return capture.value_or(false); }
-};
-
-template <class T>
-void add_content_fields(FieldList<T>& f) {
-  f.template add<&T::time>("time", "Media seconds, not negative.", protocol::kNotNegative);
-  f.template add<&T::vertices>("vertices", "The whole mesh at this time.");
-  f.template add<&T::capture>("capture", "Take what the actor shows at this moment.");
-}
 
 /// x1, y1, x2, y2 of a CSS cubic-bezier; the x may not run backwards.
 Status check_easing(const std::array<double, 4>& e) {
@@ -74,10 +36,9 @@ struct KeyframeAddParams : KeyframeContent {
     f.add<&T::easing>("easing", "[x1, y1, x2, y2] of a CSS cubic-bezier, applied to the blend.");
   }
   [[nodiscard]] Status check() const {
-    if (vertices.has_value() == captures()) {
-      return fail(ErrorCode::InvalidParams,
-                  fmt::format("expected vertices or capture: true, found {}", vertices ? "both" : "neither"),
-                  vertices ? "capture" : "vertices");
+    TWEEND_TRY(check_content());
+    if (!says_anything()) {
+      return fail(ErrorCode::InvalidParams, "expected pose, vertices or capture: true, found none of them", "vertices");
     }
     if (easing) return check_easing(*easing);
     return {};
@@ -115,7 +76,7 @@ struct KeyframeUpdateParams : KeyframeContent {
     f.add<&T::easing>("easing", "[x1, y1, x2, y2] of a CSS cubic-bezier; null: none.");
   }
   [[nodiscard]] Status check() const {
-    if (vertices && captures()) return fail(ErrorCode::InvalidParams, "expected vertices or capture, found both", "capture");
+    TWEEND_TRY(check_content());
     if (easing && *easing) return check_easing(**easing);
     return {};
   }
@@ -169,12 +130,14 @@ struct KeyframeState {
   double time = 0.0;
   Interpolation interpolation = Interpolation::Linear;
   std::optional<std::array<double, 4>> easing;
+  std::optional<std::vector<std::string>> joints;
   static void describe(FieldList<KeyframeState>& f) {
     using T = KeyframeState;
     f.add<&T::keyframe>("keyframe", "Its id.");
     f.add<&T::time>("time", "Media seconds.");
     f.add<&T::interpolation>("interpolation", "In force towards the next keyframe.");
     f.add<&T::easing>("easing", "[x1, y1, x2, y2] of a CSS cubic-bezier.");
+    f.add<&T::joints>("joints", "Of a skeletal clip: names of the joints it keys.");
   }
 };
 
@@ -190,40 +153,6 @@ struct KeyframeListResult {
     f.add<&T::closed>("closed", "Whether the clip blends back to its first keyframe.");
   }
 };
-
-std::span<const float> either(const std::optional<std::vector<float>>& plain,
-                              const std::optional<protocol::Base64Floats>& packed) {
-  if (plain) return *plain;
-  if (packed) return packed->values;
-  return {};
-}
-
-Result<model::VertexKeyPtr> given_vertices(const VerticesParams& p, const model::Mesh& mesh) {
-  auto key = model::VertexKey::make(mesh, either(p.positions, p.positions_base64), either(p.normals, p.normals_base64));
-  if (key) return *key;
-  const bool packed = key.error().path == "positions" ? p.positions_base64.has_value() : p.normals_base64.has_value();
-  return fail(key.error().code, key.error().message, "params.vertices." + key.error().path + (packed ? "_base64" : ""));
-}
-
-Result<model::VertexKeyPtr> captured_vertices(const model::Actor& actor, const stage::ActorShow& show) {
-  std::vector<float> block(6 * actor.mesh->vertex_count());
-  const std::span<float> positions = std::span(block).first(block.size() / 2);
-  const std::span<float> normals = std::span(block).subspan(block.size() / 2);
-  TWEEND_TRY(model::sample_vertices(*show.actor, *show.clip, show.time_s, {positions, normals, {}}));
-  return model::VertexKey::make(*actor.mesh, positions, normals);
-}
-
-/// What the keyframe shall hold; worked out once for the same mesh and, captured, for the same picture.
-Result<model::VertexKeyPtr> make_vertices(const KeyframeContent& p, const model::ActorPtr& actor, EditContext& context) {
-  const std::string mesh = to_string(actor->mesh->hash());
-  if (p.vertices) return context.once("vertices " + mesh, [&] { return given_vertices(*p.vertices, *actor->mesh); });
-  const stage::Player* player = context.view ? context.view->find_player(actor->name) : nullptr;
-  // An actor whose creation is not published yet has no player: it shows its first clip from the start.
-  const stage::ActorShow show = player != nullptr ? stage::show_actor(actor, *player, context.now_us)
-                                                  : stage::ActorShow{actor, actor->clips.front(), 0.0, 0.0, false, 0};
-  const std::string picture = fmt::format("capture {} {} {} {}", mesh, fmt::ptr(actor.get()), show.clip->name, show.time_s);
-  return context.once(picture, [&] { return captured_vertices(*actor, show); });
-}
 
 struct Found {
   model::ActorPtr actor;
@@ -255,9 +184,9 @@ Result<KeyframeAddResult> add_keyframe(const KeyframeAddParams& p, EditContext& 
   }
   const double time_s = p.time.value_or(clip->times_s.empty() ? 0.0 : clip->times_s.back() + 1.0);
   TWEEND_TRY(check_keyframe_time(*clip, time_s));
-  TWEEND_ASSIGN(const model::VertexKeyPtr vertices, make_vertices(p, actor, context));
+  TWEEND_ASSIGN(const KeyContent content, make_content(p, actor, clip, time_s, nullptr, context));
 
-  model::Keyframe keyframe{context.transaction.new_keyframe_id(), p.interpolation, {}, vertices};
+  model::Keyframe keyframe{context.transaction.new_keyframe_id(), p.interpolation, {}, content.vertices, content.pose};
   if (p.easing) keyframe.easing = bezier(*p.easing);
   const KeyframeAddResult result{keyframe.id, clip->place_of(time_s), time_s, 0};
   context.transaction.apply(stage::SetKeyframe{actor->name, clip->name, keyframe.id, stage::TimedKeyframe{time_s, keyframe}});
@@ -278,12 +207,15 @@ Result<RevisionResult> replace_keyframe(const Found& found, double time_s, const
 Result<RevisionResult> update_keyframe(const KeyframeUpdateParams& p, EditContext& context) {
   TWEEND_ASSIGN(const Found found, find_keyframe(p.actor, p.clip, p.keyframe, context));
   model::Keyframe keyframe = found.clip->keyframes[found.index];
-  if (p.vertices || p.captures()) {
-    TWEEND_ASSIGN(keyframe.vertices, make_vertices(p, found.actor, context));
+  const double time_s = p.time.value_or(found.clip->times_s[found.index]);
+  if (p.says_anything()) {
+    TWEEND_ASSIGN(const KeyContent content, make_content(p, found.actor, found.clip, time_s, keyframe.pose.get(), context));
+    keyframe.vertices = content.vertices;
+    keyframe.pose = content.pose;
   }
   keyframe.interpolation = p.interpolation.value_or(keyframe.interpolation);
   if (p.easing) keyframe.easing = *p.easing ? std::optional(bezier(**p.easing)) : std::nullopt;
-  return replace_keyframe(found, p.time.value_or(found.clip->times_s[found.index]), keyframe, context);
+  return replace_keyframe(found, time_s, keyframe, context);
 }
 
 Result<RevisionResult> move_keyframe(const KeyframeMoveParams& p, EditContext& context) {
@@ -298,6 +230,17 @@ Result<RevisionResult> remove_keyframe(const KeyframeRemoveParams& p, EditContex
   return RevisionResult{};
 }
 
+std::vector<std::string> keyed_joints(const model::PoseKey& pose, const model::Skeleton& skeleton) {
+  std::vector<std::string> names;
+  std::optional<std::uint32_t> last;
+  for (const model::KeyedValue& v : pose.values()) {  // by joint, then property
+    if (v.channel.property == animation::Property::Weight || v.channel.target == last) continue;
+    last = v.channel.target;
+    names.push_back(skeleton.joints()[v.channel.target].name);
+  }
+  return names;
+}
+
 Result<KeyframeListResult> list_keyframes(const KeyframeListParams& p, const QueryContext& context) {
   const stage::SceneViewPtr view = context.view->find(scene_or_main(p.scene));
   if (!view) return no_such_scene(scene_or_main(p.scene));
@@ -306,9 +249,10 @@ Result<KeyframeListResult> list_keyframes(const KeyframeListParams& p, const Que
   KeyframeListResult result{{}, clip->duration_s(), clip->settings.closed};
   for (std::size_t i = 0; i < clip->keyframes.size(); ++i) {
     const model::Keyframe& k = clip->keyframes[i];
-    KeyframeState state{k.id, clip->times_s[i], model::effective_interpolation(*actor, *clip, i), {}};
+    KeyframeState state{k.id, clip->times_s[i], model::effective_interpolation(*actor, *clip, i), {}, {}};
     if (k.easing) state.easing = std::array{k.easing->x1, k.easing->y1, k.easing->x2, k.easing->y2};
-    result.keyframes.push_back(state);
+    if (k.pose) state.joints = keyed_joints(*k.pose, *actor->model->skeleton);
+    result.keyframes.push_back(std::move(state));
   }
   return result;
 }
@@ -316,7 +260,7 @@ Result<KeyframeListResult> list_keyframes(const KeyframeListParams& p, const Que
 }  // namespace
 
 void add_keyframe_commands(std::vector<Command>& t) {
-  t.push_back(edit_command<&add_keyframe>("keyframe.add", Role::Control, "Add a keyframe, from vertices or from what is shown.",
+  t.push_back(edit_command<&add_keyframe>("keyframe.add", Role::Control, "Add a keyframe: a pose, vertices, or what is shown.",
                                           Shape::HeavyEdit));
   t.push_back(edit_command<&update_keyframe>("keyframe.update", Role::Control, "Change a keyframe; what is left out stays.",
                                              Shape::HeavyEdit));

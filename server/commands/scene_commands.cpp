@@ -111,13 +111,20 @@ struct ClipState {
   }
 };
 
-struct JointState {
-  static constexpr std::string_view kName = "Joint";
-  std::string name;
-  std::optional<std::string> parent;
-  static void describe(FieldList<JointState>& f) {
-    f.add<&JointState::name>("name", "Its name.");
-    f.add<&JointState::parent>("parent", "The parent's name; a root has none.");
+struct LayerState {
+  static constexpr std::string_view kName = "Layer";
+  std::string layer;
+  std::string clip;
+  float weight = 1.0F;
+  bool additive = false;
+  std::optional<std::vector<std::string>> mask;
+  static void describe(FieldList<LayerState>& f) {
+    using T = LayerState;
+    f.add<&T::layer>("layer", "Its name.");
+    f.add<&T::clip>("clip", "What it plays.");
+    f.add<&T::weight>("weight", "0 to 1; while it fades, where it is going.");
+    f.add<&T::additive>("additive", "Whether it adds rather than replaces.");
+    f.add<&T::mask>("mask", "The joints it touches; left out: all.");
   }
 };
 
@@ -128,23 +135,29 @@ struct ActorState {
   TransformState transform;
   Nullable<Interpolation> interpolation;
   bool visible = true;
+  bool show_skeleton = false;
   double spin = 0.0;
   PlayerState player;
   std::vector<ClipState> clips;
+  std::vector<LayerState> layers;
   std::vector<JointState> joints;
+  std::vector<std::string> weights;
   std::uint64_t vertices = 0;
   std::uint64_t triangles = 0;
   static void describe(FieldList<ActorState>& f) {
     using T = ActorState;
     f.add<&T::actor>("actor", "Its name.");
-    f.add<&T::source>("source", "The asset it came from, or mesh.");
+    f.add<&T::source>("source", "The asset it came from, or mesh, or skeleton.");
     f.add<&T::transform>("transform", "World from model.");
     f.add<&T::interpolation>("interpolation", "The actor's own; null: its clips say.");
     f.add<&T::visible>("visible", "Whether it is drawn.");
+    f.add<&T::show_skeleton>("show_skeleton", "Whether joints and bones are drawn over the mesh.");
     f.add<&T::spin>("spin", "Radians a second about +Y while playing.");
     f.add<&T::player>("player", "Its transport.");
     f.add<&T::clips>("clips", "In the order they were made.");
+    f.add<&T::layers>("layers", "In the order they lie over each other.");
     f.add<&T::joints>("joints", "Its skeleton; a mesh without one has none.");
+    f.add<&T::weights>("weights", "Names of its morph targets.");
     f.add<&T::vertices>("vertices", "How many.");
     f.add<&T::triangles>("triangles", "How many.");
   }
@@ -175,6 +188,15 @@ ClipState clip_state(const model::Clip& clip) {
   ClipState state{clip.name,         std::optional<WireClipType>(), clip.keyframes.size(),
                   clip.duration_s(), clip.settings.closed,          clip.settings.interpolation};
   if (clip.type() == model::ClipType::Vertex) state.type = WireClipType::Vertex;
+  if (clip.type() == model::ClipType::Skeletal) state.type = WireClipType::Skeletal;
+  return state;
+}
+
+LayerState layer_state(const model::Actor& actor, const model::Layer& layer) {
+  LayerState state{layer.name, layer.clip, layer.weight, layer.additive, {}};
+  if (!layer.joints) return state;
+  state.mask.emplace();
+  for (const std::uint32_t joint : *layer.joints) state.mask->push_back(actor.model->skeleton->joints()[joint].name);
   return state;
 }
 
@@ -186,13 +208,17 @@ ActorState actor_state(const stage::SceneView& view, std::size_t index, ClockUs 
                    {s.transform.translation, s.transform.rotation, s.transform.scale},
                    s.interpolation,
                    s.visible,
+                   s.show_skeleton,
                    s.spin_rad_s,
                    player_state(view, index, now_us),
                    {},
                    {},
-                   actor.mesh->vertex_count(),
-                   actor.mesh->triangle_count()};
+                   joint_states(*actor.model),
+                   weight_names(*actor.model),
+                   actor.model->vertex_count(),
+                   actor.model->mesh ? actor.model->mesh->triangle_count() : 0};
   for (const model::ClipPtr& clip : actor.clips) state.clips.push_back(clip_state(*clip));
+  for (const model::Layer& layer : actor.layers) state.layers.push_back(layer_state(actor, layer));
   return state;
 }
 

@@ -19,7 +19,7 @@ struct HelloResult {
   std::string version = TWEEND_VERSION;
   std::int64_t protocol = 1;
   std::string role = std::string(role_name(Role::Admin));
-  std::vector<std::string> capabilities{"line", "websocket", "http", "events", "assets:obj", "vertices:f32"};
+  std::vector<std::string> capabilities{"line", "websocket", "http", "events", "assets:obj", "pose:f32", "vertices:f32"};
   static void describe(FieldList<HelloResult>& f) {
     using T = HelloResult;
     f.add<&T::server>("server", "Always tweend.");

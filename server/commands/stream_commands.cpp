@@ -7,11 +7,13 @@
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
 #include "server/commands/stream_types.hpp"
+#include "server/model/actor_bounds.hpp"
 
 namespace tweend::commands {
 namespace {
 
 constexpr double kDefaultRate = 30.0;
+constexpr double kDefaultPoseRate = 60.0;
 
 struct BoundsState {
   static constexpr std::string_view kName = "Bounds";
@@ -23,9 +25,12 @@ struct BoundsState {
   }
 };
 
-/// What a packet's bytes mean: the first four of vertices, the others of frames.
+/// What a packet's bytes mean: the first three of a pose, the next four of vertices, the others of frames.
 struct StreamLayout {
   static constexpr std::string_view kName = "StreamLayout";
+  std::optional<std::vector<JointState>> joints;
+  std::optional<std::vector<std::string>> weights;
+  std::optional<std::uint64_t> stride;
   std::optional<std::uint64_t> vertices;
   std::optional<protocol::Base64Indices> indices;
   std::optional<protocol::Base64Floats> uvs;
@@ -34,10 +39,13 @@ struct StreamLayout {
   std::optional<std::string> codec;
   static void describe(FieldList<StreamLayout>& f) {
     using T = StreamLayout;
+    f.add<&T::joints>("joints", "In the order of the payload.");
+    f.add<&T::weights>("weights", "Names of the morph targets, in the order of the payload.");
+    f.add<&T::stride>("stride", "Bytes from one joint to the next.");
     f.add<&T::vertices>("vertices", "How many.");
     f.add<&T::indices>("indices_base64", "Little-endian uint32, three a triangle.");
     f.add<&T::uvs>("uvs_base64", "Little-endian float32, u and v of each vertex.");
-    f.add<&T::bounds>("bounds", "Of the keyframes of the player's clip.");
+    f.add<&T::bounds>("bounds", "Of what the player's clip shows.");
     f.add<&T::width>("width", "Pixels.");
     f.add<&T::height>("height", "Pixels.");
     f.add<&T::codec>("codec", "jpeg, png or rgba.");
@@ -73,25 +81,22 @@ struct CloseParams {
   static void describe(FieldList<CloseParams>& f) { f.add<&CloseParams::stream>("stream", "Its number."); }
 };
 
-BoundsState bounds_of(const model::Actor& actor, const model::Clip& clip) {
-  model::Bounds all = clip.keyframes.empty() ? actor.rest->bounds() : clip.keyframes.front().vertices->bounds();
-  for (const model::Keyframe& k : clip.keyframes) {
-    const model::Bounds& b = k.vertices->bounds();
-    for (int i = 0; i < 3; ++i) {
-      all.min[i] = std::min(all.min[i], b.min[i]);
-      all.max[i] = std::max(all.max[i], b.max[i]);
-    }
-  }
-  return {all.min, all.max};
-}
-
-StreamLayout vertices_layout(const model::Actor& actor, const model::Clip& clip) {
-  const model::Mesh& mesh = *actor.mesh;
+StreamLayout vertices_layout(const model::Actor& actor, const model::ClipPtr& clip) {
+  const model::Mesh& mesh = *actor.model->mesh;
   StreamLayout layout;
   layout.vertices = mesh.vertex_count();
   layout.indices = protocol::Base64Indices{{mesh.indices().begin(), mesh.indices().end()}};
   if (!mesh.texcoords().empty()) layout.uvs = protocol::Base64Floats{{mesh.texcoords().begin(), mesh.texcoords().end()}};
-  layout.bounds = bounds_of(actor, clip);
+  const model::Bounds bounds = model::clip_bounds(actor, clip);
+  layout.bounds = BoundsState{bounds.min, bounds.max};
+  return layout;
+}
+
+StreamLayout pose_layout(const model::Model& model) {
+  StreamLayout layout;
+  layout.joints = joint_states(model);
+  layout.weights = weight_names(model);
+  layout.stride = protocol::kFloatsPerJoint * sizeof(float);
   return layout;
 }
 
@@ -109,8 +114,11 @@ std::string open_result(std::uint32_t stream, const streams::StreamKey& key, con
   if (const auto* frames = std::get_if<streams::FramesSpec>(&key.what)) {
     return protocol::encode(OpenResult{stream, frames_layout(*frames)});
   }
+  if (const auto* pose = std::get_if<streams::PoseSpec>(&key.what)) {
+    return protocol::encode(OpenResult{stream, pose_layout(*view.scene->find_actor(pose->actor)->model)});
+  }
   const model::ActorPtr actor = view.scene->find_actor(std::get<streams::VerticesSpec>(key.what).actor);
-  return protocol::encode(OpenResult{stream, vertices_layout(*actor, *stage::clip_of(*actor, *view.find_player(actor->name)))});
+  return protocol::encode(OpenResult{stream, vertices_layout(*actor, stage::clip_of(*actor, *view.find_player(actor->name)))});
 }
 
 void subscribe_later(const std::shared_ptr<Conversation>& conversation, std::uint32_t stream) {
@@ -140,8 +148,7 @@ Result<streams::StreamKey> updated_key(const UpdateParams& p, streams::StreamKey
   if (!p.camera) return key;
   auto* frames = std::get_if<streams::FramesSpec>(&key.what);
   if (frames == nullptr) {
-    return fail(ErrorCode::InvalidParams, "expected camera with a stream of frames, found it with one of vertices",
-                "params.camera");
+    return fail(ErrorCode::InvalidParams, "expected camera with a stream of frames, found it with another", "params.camera");
   }
   frames->camera.reset();
   if (!*p.camera) return key;
@@ -199,7 +206,7 @@ Status check_pixels(const streams::StreamKey& key, Conversation& conversation) {
 
 Status only_of_frames(bool given, std::string_view name) {
   if (!given) return {};
-  return fail(ErrorCode::InvalidParams, fmt::format("expected {} with a stream of frames, found it with one of vertices", name),
+  return fail(ErrorCode::InvalidParams, fmt::format("expected {} with a stream of frames, found it with another", name),
               std::string(name));
 }
 
@@ -218,7 +225,8 @@ Status StreamOpenParams::check() const {
     return fail(ErrorCode::InvalidParams, "expected jpeg, png or rgba with a stream of frames, found f32", "encoding");
   }
   if (!f32)
-    return fail(ErrorCode::InvalidParams, "expected f32 with a stream of vertices, found an encoding of frames", "encoding");
+    return fail(ErrorCode::InvalidParams, "expected f32 with a stream of a pose or of vertices, found an encoding of frames",
+                "encoding");
   TWEEND_TRY(only_of_frames(width.has_value(), "width"));
   TWEEND_TRY(only_of_frames(height.has_value(), "height"));
   TWEEND_TRY(only_of_frames(quality.has_value(), "quality"));
@@ -226,12 +234,20 @@ Status StreamOpenParams::check() const {
 }
 
 Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::StageView& view, const Services& services) {
-  streams::StreamKey key{scene_or_main(p.scene), p.rate.value_or(kDefaultRate), {}};
+  const double usual_rate = p.kind == StreamKind::Pose ? kDefaultPoseRate : kDefaultRate;
+  streams::StreamKey key{scene_or_main(p.scene), p.rate.value_or(usual_rate), {}};
   const stage::SceneViewPtr scene = view.find(key.scene);
   if (!scene) return no_such_scene(key.scene);
   if (p.kind == StreamKind::Vertices) {
     TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
+    if (!actor->model->mesh) return no_mesh(*actor);
     key.what = streams::VerticesSpec{actor->name};
+    return key;
+  }
+  if (p.kind == StreamKind::Pose) {
+    TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
+    if (!actor->model->skeleton) return no_skeleton(*actor);
+    key.what = streams::PoseSpec{actor->name};
     return key;
   }
   streams::FramesSpec frames;

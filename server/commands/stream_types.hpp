@@ -4,7 +4,7 @@
 
 namespace tweend::commands {
 
-enum class StreamKind : std::uint8_t { Vertices, Frames };
+enum class StreamKind : std::uint8_t { Pose, Vertices, Frames };
 enum class StreamEncoding : std::uint8_t { F32, Jpeg, Png, Rgba };
 enum class StreamDelivery : std::uint8_t { Latest };
 
@@ -14,7 +14,7 @@ namespace tweend::protocol {
 
 template <>
 struct EnumNames<commands::StreamKind> {
-  static constexpr std::array<std::string_view, 2> kNames{"vertices", "frames"};
+  static constexpr std::array<std::string_view, 3> kNames{"pose", "vertices", "frames"};
 };
 template <>
 struct EnumNames<commands::StreamEncoding> {
@@ -47,11 +47,12 @@ struct StreamOpenParams {
     using T = StreamOpenParams;
     f.add<&T::kind>("kind", "What to send.");
     add_scene_field(f);
-    f.add<&T::actor>("actor",
-                     "Whose vertices; may be left out where the scene has one. Of frames: whose media time they carry.");
-    f.add<&T::rate>("rate", "Packets a second; 30 if left out.", kRate);
+    f.add<&T::actor>(
+        "actor", "Whose pose or vertices; may be left out where the scene has one. Of frames: whose media time they carry.");
+    f.add<&T::rate>("rate", "Packets a second; if left out, 60 of a pose and 30 of all else.", kRate);
     f.add<&T::delivery>("delivery", "latest: a slow reader skips.");
-    f.add<&T::encoding>("encoding", "How a packet is written: of vertices f32; of frames jpeg (if left out), png or rgba.");
+    f.add<&T::encoding>("encoding",
+                        "How a packet is written: of pose and vertices f32; of frames jpeg (if left out), png or rgba.");
     f.add<&T::width>("width", "Of frames, pixels; 1280 if left out.", kPixels);
     f.add<&T::height>("height", "Of frames, pixels; 720 if left out.", kPixels);
     f.add<&T::quality>("quality", "Of jpeg frames; 80 if left out.", kQuality);

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "server/commands/command_table.hpp"
+#include "server/model/evaluate.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -43,14 +44,13 @@ Result<SampleResult> sample(const SampleParams& p, const QueryContext& context) 
   const stage::SceneViewPtr view = context.view->find(scene_or_main(p.scene));
   if (!view) return no_such_scene(scene_or_main(p.scene));
   TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*view->scene, p.actor));
-  TWEEND_ASSIGN(const model::ClipPtr clip, find_clip(*actor, p.clip, view));
-  // Without a time: what the player shows now; of another clip than it is on, that clip at the same time.
-  const double wanted_s = p.time ? *p.time : stage::show_actor(actor, *view->find_player(actor->name), context.now_us).time_s;
-  const std::size_t count = actor->mesh->vertex_count();
-  SampleResult result{
-      std::clamp(wanted_s, 0.0, clip->duration_s()), count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
-  TWEEND_TRY(model::sample_vertices(*actor, *clip, result.time, {result.positions, result.normals, {}}));
-  if (p.indices) result.indices = std::vector<std::uint32_t>(actor->mesh->indices().begin(), actor->mesh->indices().end());
+  if (!actor->model->mesh) return no_mesh(*actor);
+  TWEEND_ASSIGN(const Moment moment, moment_of(actor, p.clip, p.time, view, context.now_us));
+  const std::size_t count = actor->model->vertex_count();
+  SampleResult result{moment.time_s, count, std::vector<float>(3 * count), std::vector<float>(3 * count), {}};
+  TWEEND_TRY(model::Evaluator().vertices(*actor, moment.shown, {result.positions, result.normals, {}}));
+  if (p.indices)
+    result.indices = std::vector<std::uint32_t>(actor->model->mesh->indices().begin(), actor->model->mesh->indices().end());
   return result;
 }
 

@@ -18,7 +18,10 @@
 namespace tweend::commands {
 
 /// What a clip holds, on the wire.
-enum class WireClipType : std::uint8_t { Vertex };
+enum class WireClipType : std::uint8_t { Vertex, Skeletal };
+
+/// What becomes of a command whose reading is past.
+enum class Late : std::uint8_t { Run, Error };
 
 }  // namespace tweend::commands
 
@@ -26,7 +29,11 @@ namespace tweend::protocol {
 
 template <>
 struct EnumNames<commands::WireClipType> {
-  static constexpr std::array<std::string_view, 1> kNames{"vertex"};
+  static constexpr std::array<std::string_view, 2> kNames{"vertex", "skeletal"};
+};
+template <>
+struct EnumNames<commands::Late> {
+  static constexpr std::array<std::string_view, 2> kNames{"run", "error"};
 };
 template <>
 struct EnumNames<animation::Interpolation> {
@@ -75,6 +82,28 @@ void add_clip_field(FieldList<T>& f) {
   f.template add<&T::clip>("clip", "Name of the clip; the player's clip if left out.");
 }
 
+/// Parameters of what can be scheduled. Derive, and call add_timed_fields in describe().
+struct Timed {
+  std::optional<std::int64_t> at_us;
+  std::optional<Late> late;
+};
+
+template <class T>
+void add_timed_fields(FieldList<T>& f) {
+  f.template add<&T::at_us>("at_us", "A reading of the server's steady clock (server.ping): carried out as of then.");
+  f.template add<&T::late>("late", "What becomes of it where at_us is past; run, as of now, if left out.");
+}
+
+struct ScheduledResult {
+  static constexpr std::string_view kName = "ScheduledCommand";
+  std::int64_t scheduled = 0;
+  std::int64_t at_us = 0;
+  static void describe(FieldList<ScheduledResult>& f) {
+    f.add<&ScheduledResult::scheduled>("scheduled", "Its id, for schedule.cancel.");
+    f.add<&ScheduledResult::at_us>("at_us", "The reading as of which it will be carried out.");
+  }
+};
+
 struct RevisionResult {
   static constexpr std::string_view kName = "Revision";
   std::uint64_t revision = 0;
@@ -105,6 +134,22 @@ struct TransformParams {
     t.scale = scale.value_or(t.scale);
   }
 };
+
+/// A joint as `scene.describe` and the layout of a pose stream tell it.
+struct JointState {
+  static constexpr std::string_view kName = "Joint";
+  std::string name;
+  std::optional<std::string> parent;
+  static void describe(FieldList<JointState>& f) {
+    f.add<&JointState::name>("name", "Its name.");
+    f.add<&JointState::parent>("parent", "The parent's name; a root has none.");
+  }
+};
+
+/// In the skeleton's order.
+[[nodiscard]] std::vector<JointState> joint_states(const model::Model& model);
+/// Names of the morph targets.
+[[nodiscard]] std::vector<std::string> weight_names(const model::Model& model);
 
 /// A player as `playback.*` and `scene.describe` tell it.
 struct PlayerState {
@@ -149,9 +194,23 @@ struct PlayersResult {
 
 [[nodiscard]] Error no_such_scene(const std::string& scene);
 [[nodiscard]] Error no_such_actor(const model::Scene& scene, const std::string& actor);
+/// What asks for vertices of an actor that is a skeleton alone.
+[[nodiscard]] Error no_mesh(const model::Actor& actor);
+/// What asks for the pose of an actor that has no joints.
+[[nodiscard]] Error no_skeleton(const model::Actor& actor);
 [[nodiscard]] Error no_such_clip(const model::Actor& actor, const std::string& clip);
 /// `actor?`: the named one, or the only one.
 [[nodiscard]] Result<model::ActorPtr> find_actor(const model::Scene& scene, const std::optional<std::string>& actor);
+/// What `*.sample` looks at.
+struct Moment {
+  double time_s = 0.0;  ///< of the clip
+  model::Shown shown;
+};
+/// `clip?` and `time?`: that clip at that time, clamped to it. Without a time: what is shown now; of another clip than the
+/// player is on, that clip at the player's time.
+[[nodiscard]] Result<Moment> moment_of(const model::ActorPtr& actor, const std::optional<std::string>& clip,
+                                       std::optional<double> time_s, const stage::SceneViewPtr& view, ClockUs now_us);
+
 /// `clip?`: the named one, or the one that the published player is on.
 [[nodiscard]] Result<model::ClipPtr> find_clip(const model::Actor& actor, const std::optional<std::string>& clip,
                                                const stage::SceneViewPtr& view);

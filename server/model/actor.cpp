@@ -21,7 +21,11 @@ ClipPtr Actor::find_clip(std::string_view clip) const noexcept {
 }
 
 animation::Interpolation effective_interpolation(const Actor& actor, const Clip& clip, std::size_t key) noexcept {
-  if (clip.keyframes[key].interpolation) return *clip.keyframes[key].interpolation;
+  const Keyframe& keyframe = clip.keyframes[key];
+  if (keyframe.interpolation) return *keyframe.interpolation;
+  if (keyframe.pose && !keyframe.pose->values().empty()) {
+    if (const auto mode = clip.mode_of(keyframe.pose->values().front().channel)) return *mode;
+  }
   if (actor.settings.interpolation) return *actor.settings.interpolation;
   return clip.settings.interpolation.value_or(animation::Interpolation::Linear);
 }
@@ -34,12 +38,7 @@ animation::KeyBlend blend_at(const Actor& actor, const Clip& clip, double time_s
                                easing ? &*easing : nullptr);
 }
 
-Status sample_vertices(const Actor& actor, const Clip& clip, double time_s, const animation::VertexTarget& out) noexcept {
-  if (clip.keyframes.empty()) {
-    const std::array sources{actor.rest->attributes()};
-    constexpr std::array kWhole{1.0F};
-    return animation::blend_vertices(sources, kWhole, 0, out);
-  }
+Status sample_keyframes(const Actor& actor, const Clip& clip, double time_s, const animation::VertexTarget& out) noexcept {
   const animation::KeyBlend blend = blend_at(actor, clip, time_s);
   std::array<animation::VertexAttributes, 4> sources;
   for (std::size_t i = 0; i < blend.count; ++i) sources[i] = clip.keyframes[blend.key[i]].vertices->attributes();

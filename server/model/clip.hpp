@@ -9,6 +9,10 @@
 
 #include "server/animation/interpolation.hpp"
 #include "server/animation/key_timeline.hpp"
+#include "server/animation/track.hpp"
+#include "server/model/memo.hpp"
+#include "server/model/pose_key.hpp"
+#include "server/model/skeleton.hpp"
 #include "server/model/vertex_key.hpp"
 
 namespace tweend::model {
@@ -19,7 +23,7 @@ using KeyframeId = std::int64_t;
 inline constexpr double kSameTimeSeconds = 1e-6;
 
 /// What a clip's keyframes hold; None until the first one says.
-enum class ClipType : std::uint8_t { None, Vertex };
+enum class ClipType : std::uint8_t { None, Vertex, Skeletal };
 
 /// A keyframe; its time stands in Clip::times_s at the same index.
 struct Keyframe {
@@ -27,7 +31,8 @@ struct Keyframe {
   /// How it blends towards the next keyframe; empty: as the actor, then the clip says.
   std::optional<animation::Interpolation> interpolation;
   std::optional<animation::CubicBezier> easing;
-  VertexKeyPtr vertices;
+  VertexKeyPtr vertices{};  ///< of a vertex clip; else null
+  PoseKeyPtr pose{};        ///< of a skeletal clip; else null
   bool operator==(const Keyframe&) const = default;
 };
 
@@ -40,17 +45,37 @@ struct ClipSettings {
   bool operator==(const ClipSettings&) const = default;
 };
 
+/// A named instant of a clip.
+struct Marker {
+  KeyframeId id = 0;    ///< unique in its scene, never reused
+  double time_s = 0.0;  ///< >= 0; beyond the clip's end it is never reached
+  std::string name;
+  bool operator==(const Marker&) const = default;
+};
+using MarkersPtr = std::shared_ptr<const std::vector<Marker>>;
+
+/// How an imported track blends where its keyframes say nothing.
+struct ChannelMode {
+  animation::Channel channel;
+  animation::Interpolation interpolation = animation::Interpolation::Linear;
+  bool operator==(const ChannelMode&) const = default;
+};
+using ChannelModesPtr = std::shared_ptr<const std::vector<ChannelMode>>;
+
 /// Named keyframes in ascending order of time. A value: held as shared_ptr<const Clip>, copied to be changed
-/// (times and pointers, never vertices).
+/// (times and pointers, never vertices). A skeletal keyframe keys a part of the pose or all of it; what one channel's track is,
+/// follows from all keyframes that key it.
 struct Clip {
   std::string name;
   ClipSettings settings;
   ClipType declared_type = ClipType::None;  ///< by clip.create; keyframes say it better
   std::vector<double> times_s;              ///< ascending, at least kSameTimeSeconds apart, each >= 0
   std::vector<Keyframe> keyframes;          ///< one for each time
+  ChannelModesPtr channel_modes;            ///< ascending by channel; null: none
+  MarkersPtr markers;                       ///< ascending by time, then id; null: none
 
   /// What its keyframes hold; of an empty clip, what was declared.
-  [[nodiscard]] ClipType type() const noexcept { return keyframes.empty() ? declared_type : ClipType::Vertex; }
+  [[nodiscard]] ClipType type() const noexcept;
   /// Seconds; 0 for an empty clip.
   [[nodiscard]] double duration_s() const noexcept;
   /// Precondition: there is a keyframe.
@@ -58,6 +83,14 @@ struct Clip {
   [[nodiscard]] std::optional<std::size_t> index_of(KeyframeId id) const noexcept;
   /// Where a keyframe at `time_s` would stand.
   [[nodiscard]] std::size_t place_of(double time_s) const noexcept;
+  /// What an imported track says of its keys; empty: nothing.
+  [[nodiscard]] std::optional<animation::Interpolation> mode_of(const animation::Channel& channel) const noexcept;
+  /// The keyframes of a skeletal clip as tracks; packed when first asked for, which takes time in proportion to all keyed
+  /// values. Safe from any thread. Precondition: always the same skeleton, that of the actor.
+  [[nodiscard]] const animation::TrackSet& tracks(const Skeleton& skeleton) const;
+
+ private:
+  Memo<animation::TrackSet> tracks_;
 };
 
 using ClipPtr = std::shared_ptr<const Clip>;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,11 +39,19 @@ using ImagePtr = std::shared_ptr<const Image>;
 /// The colour of a mesh that says nothing of its own: the technique's first publication shaded its model so.
 inline constexpr glm::vec3 kDefaultBaseColor{0.5F, 0.5F, 1.0F};
 
+/// What a texture shows beyond its edges (glTF's `wrapS` and `wrapT`).
+enum class TextureWrap : std::uint8_t { Repeat, MirroredRepeat, ClampToEdge };
+
 /// How a part of a mesh reflects light.
 struct Material {
   std::string name;                         ///< as the file calls it
   glm::vec3 base_color{kDefaultBaseColor};  ///< sRGB, 0 to 1; multiplies the texture (in linear light)
   ImagePtr base_color_texture;              ///< may be null
+  TextureWrap wrap_u = TextureWrap::Repeat;
+  TextureWrap wrap_v = TextureWrap::Repeat;
+  float alpha = 1.0F;                   ///< multiplies the texture's
+  std::optional<float> alpha_cutoff{};  ///< what is more transparent is not drawn; empty: all is, opaque
+  bool unlit = false;                   ///< shows its colour as it is
 };
 
 /// A run of a mesh's triangles that show one material.

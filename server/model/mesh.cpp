@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 #include <vector>
@@ -36,7 +37,10 @@ ContentHash hash_surface(const Surface& surface) {
     const ContentHash name = hash_bytes(std::as_bytes(std::span(material.name)));
     const ContentHash color = hash_bytes(std::as_bytes(std::span(&material.base_color, 1)));
     const ContentHash image = material.base_color_texture ? material.base_color_texture->hash() : ContentHash{};
-    words.insert(words.end(), {name.high, name.low, color.high, color.low, image.high, image.low});
+    const std::array rest{material.alpha, material.alpha_cutoff.value_or(-1.0F), material.unlit ? 1.0F : 0.0F,
+                          static_cast<float>(material.wrap_u), static_cast<float>(material.wrap_v)};
+    const ContentHash other = hash_bytes(std::as_bytes(std::span(rest)));
+    words.insert(words.end(), {name.high, name.low, color.high, color.low, image.high, image.low, other.high, other.low});
   }
   return hash_bytes(std::as_bytes(std::span(words)));
 }
@@ -44,7 +48,7 @@ ContentHash hash_surface(const Surface& surface) {
 }  // namespace
 
 Result<MeshPtr> Mesh::make(std::size_t vertex_count, std::vector<std::uint32_t> indices, std::vector<float> texcoords,
-                           Surface surface) {
+                           Surface surface, std::vector<float> colors) {
   if (vertex_count == 0) return fail(ErrorCode::InvalidParams, "expected at least one vertex, found none");
   if (indices.empty() || indices.size() % 3 != 0) {
     return fail(ErrorCode::InvalidParams,
@@ -59,16 +63,22 @@ Result<MeshPtr> Mesh::make(std::size_t vertex_count, std::vector<std::uint32_t> 
     return fail(ErrorCode::InvalidParams, fmt::format("expected {} numbers of texture coordinates for {} vertices, found {}",
                                                       2 * vertex_count, vertex_count, texcoords.size()));
   }
+  if (!colors.empty() && colors.size() != 4 * vertex_count) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected {} numbers of colours for {} vertices, found {}",
+                                                      4 * vertex_count, vertex_count, colors.size()));
+  }
   TWEEND_TRY(check_surface(surface, indices.size()));
   const std::shared_ptr<Mesh> mesh(new Mesh);
   mesh->vertex_count_ = vertex_count;
   mesh->indices_ = std::move(indices);
   mesh->texcoords_ = std::move(texcoords);
+  mesh->colors_ = std::move(colors);
   mesh->surface_ = std::move(surface);
   const ContentHash a = hash_bytes(std::as_bytes(std::span(mesh->indices_)));
   const ContentHash b = hash_bytes(std::as_bytes(std::span(mesh->texcoords_)));
   const ContentHash c = hash_surface(mesh->surface_);
-  const std::uint64_t parts[] = {vertex_count, a.high, a.low, b.high, b.low, c.high, c.low};
+  const ContentHash d = hash_bytes(std::as_bytes(std::span(mesh->colors_)));
+  const std::uint64_t parts[] = {vertex_count, a.high, a.low, b.high, b.low, c.high, c.low, d.high, d.low};
   mesh->hash_ = hash_bytes(std::as_bytes(std::span(parts)));
   return MeshPtr(mesh);
 }

@@ -47,6 +47,6 @@ using ScenePtr = std::shared_ptr<const Scene>;
 
 /// A world-space box around everything that the visible actors show in all their clips, spin and overshoot included;
 /// empty where nothing is visible.
-[[nodiscard]] std::optional<Bounds> visible_bounds(const Scene& scene) noexcept;
+[[nodiscard]] std::optional<Bounds> visible_bounds(const Scene& scene);
 
 }  // namespace tweend::model

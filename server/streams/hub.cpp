@@ -6,8 +6,8 @@
 #include <set>
 #include <utility>
 
+#include "server/streams/actor_content.hpp"
 #include "server/streams/frame_content.hpp"
-#include "server/streams/vertices_content.hpp"
 
 namespace tweend::streams {
 namespace {
@@ -31,7 +31,11 @@ std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key) {
     if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
       return std::make_shared<FrameContent>(*frames, stage_.strand(), workers_, renderer_, owner);
     }
-    return std::make_shared<VerticesContent>(std::get<VerticesSpec>(key.what), key.scene, stage_.strand(), workers_, owner);
+    if (const auto* pose = std::get_if<PoseSpec>(&key.what)) {
+      return std::make_shared<PoseContent>(key.scene, pose->actor, stage_.strand(), workers_, owner);
+    }
+    return std::make_shared<VerticesContent>(key.scene, std::get<VerticesSpec>(key.what).actor, stage_.strand(), workers_,
+                                             owner);
   });
 }
 

@@ -10,6 +10,12 @@
 
 namespace tweend::streams {
 
+/// Pose of one actor, 32-bit floats.
+struct PoseSpec {
+  std::string actor;
+  bool operator==(const PoseSpec&) const = default;
+};
+
 /// Vertices of one actor, positions then normals, 32-bit floats.
 struct VerticesSpec {
   std::string actor;
@@ -32,7 +38,7 @@ struct FramesSpec {
 struct StreamKey {
   std::string scene;
   double rate = 30.0;  ///< packets a second
-  std::variant<VerticesSpec, FramesSpec> what;
+  std::variant<VerticesSpec, FramesSpec, PoseSpec> what;
   bool operator==(const StreamKey&) const = default;
 };
 

@@ -98,10 +98,11 @@ TEST_F(AssetLibraryTest, ListingEndsAtADepth) {
 
 TEST_F(AssetLibraryTest, ImportsAFileAtFrameZero) {
   write_triangle("root/props/Tri.OBJ");
-  const ImportedModel model = must(library().import("props/Tri.OBJ"));
-  EXPECT_EQ(model.source, "props/Tri.OBJ");
-  ASSERT_EQ(model.keys.size(), 1U);
-  EXPECT_EQ(model.keys[0].frame, 0.0);
+  const model::ImportedModel imported = must(library().import("props/Tri.OBJ"));
+  EXPECT_EQ(imported.source, "props/Tri.OBJ");
+  ASSERT_EQ(imported.clips.size(), 1U);
+  EXPECT_EQ(imported.clips[0].name, "default");
+  EXPECT_EQ(imported.clips[0].times_s, std::vector<double>{0.0});
 }
 
 TEST_F(AssetLibraryTest, ImportsASequenceInOrderOfItsNumbers) {
@@ -109,19 +110,21 @@ TEST_F(AssetLibraryTest, ImportsASequenceInOrderOfItsNumbers) {
   folder_.write("root/s/s_7.obj", triangle_to("0 7 0"));
   folder_.write("root/s/s_0100.obj", triangle_to("0 100 0"));
   folder_.write("root/s/other.obj", "not read");
-  const ImportedModel model = must(library().import("s"));
-  EXPECT_EQ(model.source, "s");
-  ASSERT_EQ(model.keys.size(), 3U);
+  const model::ImportedModel imported = must(library().import("s", {.fps = 10.0}));
+  EXPECT_EQ(imported.source, "s");
+  const model::Clip& clip = imported.clips.at(0);
+  EXPECT_EQ(clip.times_s, (std::vector<double>{0.7, 1.0, 10.0})) << "frames 7, 10 and 100 at 10 a second";
+  ASSERT_EQ(clip.keyframes.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(model.keys[i].frame, (std::array{7.0, 10.0, 100.0})[i]);
-    EXPECT_EQ(model.keys[i].vertices->positions()[7], static_cast<float>(model.keys[i].frame));
+    EXPECT_EQ(clip.keyframes[i].vertices->positions()[7], (std::array{7.0F, 10.0F, 100.0F})[i]);
   }
+  EXPECT_EQ(must(library().import("s")).clips[0].times_s[2], 100.0 / 24.0) << "24 frames a second unless told";
 }
 
 TEST_F(AssetLibraryTest, ImportsAMemberOfASequenceByItsPath) {
   folder_.write("root/s/s_7.obj", triangle_to("0 7 0"));
-  const ImportedModel model = must(library().import("s/s_7.obj"));
-  EXPECT_EQ(model.keys[0].frame, 0.0) << "on its own it's no frame of anything";
+  const model::ImportedModel imported = must(library().import("s/s_7.obj"));
+  EXPECT_EQ(imported.clips[0].times_s, std::vector<double>{0.0}) << "on its own it's no frame of anything";
 }
 
 TEST_F(AssetLibraryTest, ImportsWhatIsListed) {
@@ -197,9 +200,9 @@ TEST_F(AssetLibraryTest, MaterialsLieBesideTheirFile) {
   folder_.write("root/props/tex/a.png", png_file({1, 1, {1, 2, 3, 4}}));
   folder_.write("root/props/a.mtl", "newmtl m\nKd 0.5\nmap_Kd tex/a.png\n");
   folder_.write("root/props/a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nf 1/1 2/1 3/1\n");
-  const ImportedModel model = must(library().import("props/a.obj"));
-  EXPECT_TRUE(model.warnings.empty());
-  const model::Surface& surface = model.mesh->surface();
+  const model::ImportedModel imported = must(library().import("props/a.obj"));
+  EXPECT_TRUE(imported.warnings.empty());
+  const model::Surface& surface = imported.model->mesh->surface();
   ASSERT_EQ(surface.materials.size(), 1U);
   EXPECT_EQ(surface.materials[0].base_color, glm::vec3(0.5F));
   ASSERT_TRUE(surface.materials[0].base_color_texture);
@@ -211,17 +214,17 @@ TEST_F(AssetLibraryTest, ASequenceHasTheMaterialsOfItsFirstFrame) {
   folder_.write("root/s/m.mtl", "newmtl m\nKd 1 0 0\n");
   folder_.write("root/s/s_2.obj", "mtllib gone.mtl\nusemtl other\n" + triangle);
   folder_.write("root/s/s_1.obj", "mtllib m.mtl\nusemtl m\n" + triangle);
-  const ImportedModel model = must(library().import("s"));
-  EXPECT_TRUE(model.warnings.empty());
-  ASSERT_EQ(model.mesh->surface().materials.size(), 1U);
-  EXPECT_EQ(model.mesh->surface().materials[0].base_color, glm::vec3(1, 0, 0));
+  const model::ImportedModel imported = must(library().import("s"));
+  EXPECT_TRUE(imported.warnings.empty());
+  ASSERT_EQ(imported.model->mesh->surface().materials.size(), 1U);
+  EXPECT_EQ(imported.model->mesh->surface().materials[0].base_color, glm::vec3(1, 0, 0));
 }
 
 TEST_F(AssetLibraryTest, AbsentMaterialsAreWarnedOfAndMalformedOnesRefused) {
   folder_.write("root/a.obj", "mtllib a.mtl\nusemtl m\n" + std::string(kTriangle));
-  const ImportedModel model = must(library().import("a.obj"));
-  EXPECT_EQ(model.warnings.size(), 1U);
-  EXPECT_TRUE(model.mesh->surface().materials.empty());
+  const model::ImportedModel imported = must(library().import("a.obj"));
+  EXPECT_EQ(imported.warnings.size(), 1U);
+  EXPECT_TRUE(imported.model->mesh->surface().materials.empty());
   folder_.write("root/a.mtl", "newmtl m\nKd 1 1\n");
   EXPECT_EQ(error_of(library(), "a.obj").code, ErrorCode::BadAsset);
   EXPECT_EQ(error_of(library(), "a.obj").message, "a.mtl:2: expected 1 or 3 numbers, found 2");

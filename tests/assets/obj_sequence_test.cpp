@@ -20,7 +20,7 @@ namespace tweend::assets {
 namespace {
 
 /// Frames 0, 10, 20 ... of files called s_000000.obj and so on.
-Result<ImportedModel> build(const std::vector<std::string>& texts, const Limits& limits = {}) {
+Result<ObjModel> build(const std::vector<std::string>& texts, const Limits& limits = {}) {
   std::vector<ObjFile> files;
   std::vector<std::int64_t> frames;
   for (const std::string& text : texts) {
@@ -30,7 +30,7 @@ Result<ImportedModel> build(const std::vector<std::string>& texts, const Limits&
   return build_obj_model("s", files, frames, limits);
 }
 
-ImportedModel must_build(const std::vector<std::string>& texts) { return must(build(texts)); }
+ObjModel must_build(const std::vector<std::string>& texts) { return must(build(texts)); }
 
 std::vector<float> row(std::span<const float> rows, std::size_t index, std::size_t width = 3) {
   const auto part = rows.subspan(width * index, width);
@@ -41,7 +41,7 @@ std::vector<float> row(std::span<const float> rows, std::size_t index, std::size
 constexpr std::string_view kPyramid = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0.5 0.5 1\n";
 
 TEST(BuildObjModel, OneFileIsOneKey) {
-  const ImportedModel model = must_build({std::string(kTriangle)});
+  const ObjModel model = must_build({std::string(kTriangle)});
   EXPECT_EQ(model.source, "s");
   EXPECT_EQ(model.mesh->vertex_count(), 3U);
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2));
@@ -55,7 +55,7 @@ TEST(BuildObjModel, OneFileIsOneKey) {
 TEST(BuildObjModel, FramesMayBeUneven) {
   const std::array files{must_read(kTriangle, "a"), must_read(triangle_to("0 2 0"), "b"), must_read(triangle_to("0 3 0"), "c")};
   const std::array<std::int64_t, 3> frames{-5, 7, 8};
-  const ImportedModel model = must(build_obj_model("s", files, frames, Limits{}));
+  const ObjModel model = must(build_obj_model("s", files, frames, Limits{}));
   ASSERT_EQ(model.keys.size(), 3U);
   EXPECT_EQ(model.keys[0].frame, -5.0);
   EXPECT_EQ(model.keys[1].frame, 7.0);
@@ -64,13 +64,13 @@ TEST(BuildObjModel, FramesMayBeUneven) {
 }
 
 TEST(BuildObjModel, VerticesAreNumberedInOrderOfFirstUse) {
-  const ImportedModel model = must_build({"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 5 3 2\nf 2 3 4\n"});
+  const ObjModel model = must_build({"v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 5 3 2\nf 2 3 4\n"});
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2, 2, 1, 3));
   EXPECT_THAT(model.keys[0].vertices->positions(), ElementsAre(0, 0, 1, 1, 0, 0, 0, 0, 0, 0, 1, 0)) << "an unused v is dropped";
 }
 
 TEST(BuildObjModel, PolygonsAreFannedFromTheirFirstCorner) {
-  const ImportedModel model = must_build({std::string(kPyramid) + "f 1 2 3 4\nf 1 2 5\nf 5 4 3 2 1\n"});
+  const ObjModel model = must_build({std::string(kPyramid) + "f 1 2 3 4\nf 1 2 5\nf 5 4 3 2 1\n"});
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2, 0, 2, 3, 0, 1, 4, 4, 3, 2, 4, 2, 1, 4, 1, 0));
 }
 
@@ -78,9 +78,9 @@ TEST(BuildObjModel, PolygonsAreFannedFromTheirFirstCorner) {
 // the corners of v 1 and v 3 are two vertices each, because two frames tell them apart.
 TEST(BuildObjModel, NormalsMayBeNumberedAfreshInEachFrame) {
   const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-  const ImportedModel model = must_build({head + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n",
-                                          head + "vn 0 1 0\nvn 0 0 -1\nf 1//2 2//2 3//2\nf 1//1 3//1 4//1\n",
-                                          head + "vn 0 -1 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n"});
+  const ObjModel model = must_build({head + "vn 0 0 1\nvn 1 0 0\nf 1//1 2//1 3//1\nf 1//2 3//2 4//2\n",
+                                     head + "vn 0 1 0\nvn 0 0 -1\nf 1//2 2//2 3//2\nf 1//1 3//1 4//1\n",
+                                     head + "vn 0 -1 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n"});
   ASSERT_EQ(model.mesh->vertex_count(), 6U);
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2, 3, 4, 5));
   const auto normal = [&](std::size_t key, std::size_t vertex) { return row(model.keys[key].vertices->normals(), vertex); };
@@ -112,7 +112,7 @@ TEST(BuildObjModel, EveryCornerKeepsItsOwnAttributesInEveryFrame) {
     for (const char* corners : faces) text += fmt::format(fmt::runtime(corners), any(), any(), any());
     texts.push_back(text);
   }
-  const ImportedModel model = must_build(texts);
+  const ObjModel model = must_build(texts);
   for (std::size_t frame = 0; frame < texts.size(); ++frame) {
     const ObjFile file = must_read(texts[frame]);
     for (std::size_t i = 0; i < file.corners.size(); ++i) {  // all faces are triangles: corners and indices run alike
@@ -130,21 +130,21 @@ TEST(BuildObjModel, EveryCornerKeepsItsOwnAttributesInEveryFrame) {
 
 TEST(BuildObjModel, TexcoordsComeFromTheFirstFile) {
   const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-  const ImportedModel model = must_build({head + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n",
-                                          head + "vt 0.25 0.25\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n", head + "f 1 2 3\nf 1 3 4\n"});
+  const ObjModel model = must_build({head + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nvt 0.5 0.5\nf 1/1 2/2 3/3\nf 1/5 3/3 4/4\n",
+                                     head + "vt 0.25 0.25\nf 1/1 2/1 3/1\nf 1/1 3/1 4/1\n", head + "f 1 2 3\nf 1 3 4\n"});
   EXPECT_THAT(model.mesh->indices(), ElementsAre(0, 1, 2, 3, 2, 4)) << "v 1 is split by its two texture coordinates";
   EXPECT_THAT(model.mesh->texcoords(), ElementsAre(0, 0, 1, 0, 1, 1, 0.5F, 0.5F, 0, 1));
 }
 
 TEST(BuildObjModel, CornersWithoutTexcoordsAmongOthersHaveZero) {
-  const ImportedModel model = must_build({"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n"});
+  const ObjModel model = must_build({"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5 0.5\nf 1/1 2/1 3/1\nf 1 3 4\n"});
   EXPECT_THAT(model.mesh->texcoords(), ElementsAre(0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0, 0, 0, 0, 0, 0));
 }
 
 TEST(BuildObjModel, ComputedNormalsDoNotShowTheSeamsOfTexcoords) {
   // A ridge along v 1 and v 3, whose sides face up-left and up-right; the texture is cut along the ridge.
   const std::string head = "v 0 0 1\nv -1 0 0\nv 0 1 1\nv 1 0 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0.5 0\nvt 0.5 1\n";
-  const ImportedModel model = must_build({head + "f 3/1 2/2 1/3\nf 1/4 4/2 3/5\n"});
+  const ObjModel model = must_build({head + "f 3/1 2/2 1/3\nf 1/4 4/2 3/5\n"});
   ASSERT_EQ(model.mesh->vertex_count(), 6U);
   const auto normals = model.keys[0].vertices->normals();
   const auto ridge = model.mesh->indices();  // corners 0 and 5 are v 3, corners 2 and 3 are v 1
@@ -157,7 +157,7 @@ TEST(BuildObjModel, ComputedNormalsDoNotShowTheSeamsOfTexcoords) {
 
 TEST(BuildObjModel, NormalsMissingInSomeFilesSplitNothing) {
   const std::string head = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
-  const ImportedModel model = must_build(
+  const ObjModel model = must_build(
       {head + "f 1 2 3\nf 1 3 4\n", head + "vn 1 0 0\nf 1//1 2//1 3//1\nf 1//1 3//1 4//1\n", head + "f 1 2 3\nf 1 3 4\n"});
   EXPECT_EQ(model.mesh->vertex_count(), 4U);
   EXPECT_EQ(row(model.keys[0].vertices->normals(), 0), (std::vector<float>{0, 0, 1}));
@@ -166,7 +166,7 @@ TEST(BuildObjModel, NormalsMissingInSomeFilesSplitNothing) {
 }
 
 TEST(BuildObjModel, ZeroNormalsAreComputedAndOthersMadeUnit) {
-  const ImportedModel model = must_build({"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nvn 0 5 0\nf 1//1 2//2 3//1\n"});
+  const ObjModel model = must_build({"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 0\nvn 0 5 0\nf 1//1 2//2 3//1\n"});
   EXPECT_THAT(model.keys[0].vertices->normals(), ElementsAre(0, 0, 1, 0, 1, 0, 0, 0, 1));
 }
 
@@ -216,7 +216,7 @@ TEST(BuildObjModel, MaterialsAreThoseOfTheFirstFile) {
                          must_read(head + "usemtl c\nf 1 2 3 4\nf 1 2 3\n", "2")};
   const std::array<std::int64_t, 2> frames{0, 1};
   const std::array<std::optional<model::Material>, 2> materials{model::Material{"a", {1, 0, 0}, nullptr}, std::nullopt};
-  const ImportedModel model = must(build_obj_model("s", files, frames, Limits{}, materials));
+  const ObjModel model = must(build_obj_model("s", files, frames, Limits{}, materials));
   const model::Surface& surface = model.mesh->surface();
   ASSERT_EQ(surface.materials.size(), 2U);
   EXPECT_EQ(surface.materials[0].name, "a");
@@ -226,8 +226,8 @@ TEST(BuildObjModel, MaterialsAreThoseOfTheFirstFile) {
 }
 
 TEST(BuildObjModel, TheSameFilesMakeTheSameContent) {
-  const ImportedModel a = must_build({std::string(kTriangle), triangle_to("0 2 0")});
-  const ImportedModel b = must_build({std::string(kTriangle), triangle_to("0 2 0")});
+  const ObjModel a = must_build({std::string(kTriangle), triangle_to("0 2 0")});
+  const ObjModel b = must_build({std::string(kTriangle), triangle_to("0 2 0")});
   EXPECT_EQ(a.mesh->hash(), b.mesh->hash());
   EXPECT_EQ(a.keys[1].vertices->hash(), b.keys[1].vertices->hash());
   EXPECT_NE(a.keys[0].vertices->hash(), a.keys[1].vertices->hash());

@@ -42,7 +42,7 @@ void check(const tweend::assets::ObjFile& file) {
   }
 }
 
-void check(const tweend::assets::ImportedModel& model, const std::vector<tweend::assets::ObjFile>& files) {
+void check(const tweend::assets::ObjModel& model, const std::vector<tweend::assets::ObjFile>& files) {
   require(model.keys.size() == files.size());
   for (const auto& part : model.mesh->surface().parts) require(part.material < model.mesh->surface().materials.size());
   require(model.mesh->vertex_count() <= kMaxVertices && model.mesh->vertex_count() <= files.front().corners.size());

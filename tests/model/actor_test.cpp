@@ -7,6 +7,8 @@
 #include <memory>
 #include <numbers>
 
+#include "server/model/evaluate.hpp"
+
 namespace tweend::model {
 namespace {
 
@@ -23,12 +25,13 @@ Actor actor_with(std::vector<float> heights, Clip clip = {}) {
     clip.times_s.push_back(static_cast<double>(i));
     clip.keyframes.push_back({static_cast<KeyframeId>(i + 1), {}, {}, lifted(heights[i])});
   }
-  return {"a", "mesh", triangle(), lifted(-1), {}, {std::make_shared<const Clip>(std::move(clip))}};
+  auto model = std::make_shared<const Model>(Model{triangle(), lifted(-1), {}, {}, {}});
+  return {"a", "mesh", std::move(model), {}, {std::make_shared<const Clip>(std::move(clip))}, {}};
 }
 
 float height_at(const Actor& actor, double time_s) {
   std::array<float, 9> positions{}, normals{};
-  EXPECT_TRUE(sample_vertices(actor, *actor.clips.front(), time_s, {positions, normals, {}}));
+  EXPECT_TRUE(Evaluator().vertices(actor, shown_clip(actor.clips.front(), time_s), {positions, normals, {}}));
   return positions[1];
 }
 
@@ -69,7 +72,7 @@ TEST(SampleVertices, EasingBendsTheBlend) {
 TEST(SampleVertices, WrongLengthsAreRefused) {
   std::array<float, 8> positions{};
   const Actor actor = actor_with({0, 1});
-  const Status status = sample_vertices(actor, *actor.clips.front(), 0.5, {positions, {}, {}});
+  const Status status = Evaluator().vertices(actor, shown_clip(actor.clips.front(), 0.5), {positions, {}, {}});
   ASSERT_FALSE(status);
   EXPECT_EQ(status.error().code, ErrorCode::Internal);
 }

@@ -93,7 +93,8 @@ ActorPtr actor(std::vector<float> positions, ActorSettings settings = {}) {
   Clip clip;
   clip.times_s = {0};
   clip.keyframes = {{1, {}, {}, key}};
-  return std::make_shared<const Actor>(Actor{"a", "mesh", mesh, key, settings, {std::make_shared<const Clip>(clip)}});
+  const auto model = std::make_shared<const Model>(Model{mesh, key, {}, {}, {}});
+  return std::make_shared<const Actor>(Actor{"a", "mesh", model, settings, {std::make_shared<const Clip>(clip)}, {}});
 }
 
 bool holds(const Bounds& box, Vec p) {

@@ -46,7 +46,13 @@ TEST(Clip, ItsTypeIsThatOfItsKeyframesElseTheDeclaredOne) {
   EXPECT_EQ(empty.type(), ClipType::None);
   empty.declared_type = ClipType::Vertex;
   EXPECT_EQ(empty.type(), ClipType::Vertex);
-  EXPECT_EQ(clip_at({0.0}).type(), ClipType::Vertex);
+  Clip keyed = clip_at({0.0});
+  keyed.declared_type = ClipType::Vertex;
+  keyed.keyframes.front().pose = std::make_shared<const PoseKey>(std::vector<KeyedValue>{});
+  EXPECT_EQ(keyed.type(), ClipType::Skeletal);
+  const MeshPtr mesh = *Mesh::make(3, {0, 1, 2});
+  keyed.keyframes.front() = {1, {}, {}, *VertexKey::make(*mesh, std::vector<float>(9, 0.0F))};
+  EXPECT_EQ(keyed.type(), ClipType::Vertex);
 }
 
 }  // namespace

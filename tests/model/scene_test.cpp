@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "server/model/evaluate.hpp"
+
 namespace tweend::model {
 namespace {
 
@@ -35,7 +37,8 @@ ClipPtr clip_of(std::string name, std::vector<double> times_s, const std::vector
 }
 
 Actor actor_of(VertexKeyPtr rest, std::vector<ClipPtr> clips, ActorSettings settings = {}) {
-  return {"a", "mesh", triangle(), std::move(rest), std::move(settings), std::move(clips)};
+  auto model = std::make_shared<const Model>(Model{triangle(), std::move(rest), {}, {}, {}});
+  return {"a", "mesh", std::move(model), std::move(settings), std::move(clips), {}};
 }
 
 Scene scene_of(const std::vector<Actor>& actors) {
@@ -63,7 +66,7 @@ double farthest_outside(const Scene& scene, const Bounds& box) {
     for (const ClipPtr& clip : a->clips) {
       for (int step = 0; step <= 200; ++step) {
         std::array<float, 9> positions{};
-        EXPECT_TRUE(sample_vertices(*a, *clip, clip->duration_s() * step / 200.0, {positions, {}, {}}));
+        EXPECT_TRUE(Evaluator().vertices(*a, shown_clip(clip, clip->duration_s() * step / 200.0), {positions, {}, {}}));
         for (int turn = 0; turn < (a->settings.spin_rad_s != 0.0 ? 32 : 1); ++turn) {
           for (std::size_t i = 0; i < 9; i += 3) {
             const Point p = placed(a->settings.transform, turn * std::numbers::pi / 16.0,

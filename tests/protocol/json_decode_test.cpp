@@ -374,5 +374,31 @@ TEST(Decode, QuotesShortTextsOnly) {
   EXPECT_NE(result.error().message.find("a text of 5000 bytes"), std::string::npos) << result.error().message;
 }
 
+struct Point {
+  static constexpr std::string_view kName = "Point";
+  std::optional<glm::vec3> at;
+  static void describe(FieldList<Point>& f) { f.add<&Point::at>("at", "Where."); }
+};
+
+TEST(Decode, TakesObjectsWithNamesOfTheClientsChoice) {
+  const auto points = read<Entries<Point>>(R"({"b":{"at":[1,2,3]},"a b":{}})");
+  ASSERT_TRUE(points) << points.error().message;
+  ASSERT_EQ(points->list.size(), 2U);
+  EXPECT_EQ(points->list[0].first, "a b") << "in the order of their names";
+  EXPECT_FALSE(points->list[0].second.at);
+  EXPECT_EQ(points->list[1].second.at, glm::vec3(1, 2, 3));
+}
+
+TEST(Decode, NamesThePathWithinSuchAnObject) {
+  const auto refused_at = [](std::string_view text) {
+    const auto points = read<Entries<Point>>(text);
+    return points ? std::string() : points.error().path;
+  };
+  EXPECT_EQ(refused_at("[]"), "params.value");
+  EXPECT_EQ(refused_at(R"({"arm":5})"), "params.value.arm");
+  EXPECT_EQ(refused_at(R"({"arm":{"twist":1}})"), "params.value.arm.twist");
+  EXPECT_EQ(refused_at(R"({"arm":{"at":[1,2]}})"), "params.value.arm.at");
+}
+
 }  // namespace
 }  // namespace tweend::protocol

@@ -34,8 +34,7 @@ void expect_same(const Scene& a, const Scene& b) {
     const Actor& left = *a.actors[i];
     const Actor& right = *b.actors[i];
     EXPECT_EQ(left.name, right.name);
-    EXPECT_EQ(left.mesh, right.mesh);
-    EXPECT_EQ(left.rest, right.rest);
+    EXPECT_EQ(left.model, right.model);
     EXPECT_EQ(left.settings, right.settings);
     ASSERT_EQ(left.clips.size(), right.clips.size());
     for (std::size_t c = 0; c < left.clips.size(); ++c) {
@@ -95,7 +94,7 @@ class RandomChanges {
   double free_time() { return std::uniform_real_distribution(0.0, 900.0)(random_); }
   ClipPtr rising(const Actor& actor, const std::string& name) {
     last_id_ += 3;
-    return rising_clip(*actor.mesh, {.name = name, .first_id = last_id_ - 2});
+    return rising_clip(*actor.model->mesh, {.name = name, .first_id = last_id_ - 2});
   }
   Change add_actor() {
     std::string name = "actor " + std::to_string(++last_actor_);
@@ -104,7 +103,8 @@ class RandomChanges {
   }
   Change add_keyframe(const Actor& actor, const Clip& clip) {
     const model::KeyframeId id = ++last_id_;
-    return SetKeyframe{actor.name, clip.name, id, TimedKeyframe{free_time(), {id, {}, {}, square_at(*actor.mesh, 7.0F)}}};
+    return SetKeyframe{actor.name, clip.name, id,
+                       TimedKeyframe{free_time(), {id, {}, {}, square_at(*actor.model->mesh, 7.0F)}}};
   }
 
   std::mt19937 random_;
@@ -177,7 +177,7 @@ TEST(Change, AnAddedKeyframeSharesTheVerticesOfAHundredOthers) {
   const ActorPtr actor = square_actor("square", {{.keys = 100}});
   Scene scene = *scene_of("main", {actor, square_actor("other")});
   const ActorPtr other = scene.actors[1];
-  const model::VertexKeyPtr added = square_at(*actor->mesh, 50.5F);
+  const model::VertexKeyPtr added = square_at(*actor->model->mesh, 50.5F);
   static_cast<void>(stage::apply(scene, SetKeyframe{"square", "default", 101, TimedKeyframe{50.5, {101, {}, {}, added}}}));
   const Clip& before = *actor->clips[0];
   const Clip& after = *scene.actors[0]->clips[0];
@@ -187,7 +187,7 @@ TEST(Change, AnAddedKeyframeSharesTheVerticesOfAHundredOthers) {
   for (std::size_t i = 0; i < 100; ++i) {
     EXPECT_EQ(after.keyframes[i < 51 ? i : i + 1].vertices, before.keyframes[i].vertices);
   }
-  EXPECT_EQ(scene.actors[0]->mesh, actor->mesh);
+  EXPECT_EQ(scene.actors[0]->model, actor->model);
   EXPECT_EQ(scene.actors[1], other) << "an actor that was not touched is the very same";
 }
 

@@ -307,7 +307,7 @@ TEST(StageUndo, NeverLetsAKeyframesIdBeUsedAgain) {
   const auto add_keyframe = [&](double time_s) {
     const auto answer = stage.edit(named("keyframe.add"), [time_s](Transaction& t) -> Result<std::string> {
       const model::KeyframeId id = t.new_keyframe_id();
-      const model::VertexKeyPtr vertices = square_at(*t.scene().actors[0]->mesh, 0.0F);
+      const model::VertexKeyPtr vertices = square_at(*t.scene().actors[0]->model->mesh, 0.0F);
       t.apply(SetKeyframe{"square", "default", id, TimedKeyframe{time_s, {id, {}, {}, vertices}}});
       return std::to_string(id);
     });

@@ -104,7 +104,7 @@ TEST(StageFailure, InTheMidstOfManyEditsLosesOnlyWhatWasRefused) {
       const double time_s = 1.0 + round * 8 + i;
       answers.push_back(stage.edit_later(named("keyframe.add"), [time_s](Transaction& t) -> Answer {
         const model::KeyframeId id = t.new_keyframe_id();
-        const model::VertexKeyPtr vertices = square_at(*t.scene().actors[0]->mesh, 0.0F);
+        const model::VertexKeyPtr vertices = square_at(*t.scene().actors[0]->model->mesh, 0.0F);
         t.apply(SetKeyframe{"square", "default", id, TimedKeyframe{time_s, {id, {}, {}, vertices}}});
         return std::to_string(id);
       }));

@@ -31,7 +31,7 @@ void play_once(Player& player, const PlayRange& range, ClockUs now_us) {
 /// What an edit that adds a keyframe at a time is made of.
 Change keyframe_at(const RunningStage& stage, const std::string& actor, double time_s, model::KeyframeId id) {
   const model::ActorPtr at = stage.view()->scene->find_actor(actor);
-  return SetKeyframe{actor, at->clips[0]->name, id, TimedKeyframe{time_s, {id, {}, {}, square_at(*at->mesh, 5.0F)}}};
+  return SetKeyframe{actor, at->clips[0]->name, id, TimedKeyframe{time_s, {id, {}, {}, square_at(*at->model->mesh, 5.0F)}}};
 }
 
 TEST(StagePlayers, ChangeWithoutAnEdit) {

@@ -33,7 +33,8 @@ stage::Show show_of(std::vector<model::ActorPtr> actors, double time_s) {
   const model::ScenePtr scene = scene_of("main", std::move(actors));
   show.scene = scene;
   for (const model::ActorPtr& actor : scene->actors) {
-    show.actors.push_back({actor, actor->clips.front(), time_s, 0.0, false, false, 0});
+    const model::ClipPtr& clip = actor->clips.front();
+    show.actors.push_back({actor, clip, time_s, model::shown_clip(clip, time_s), 0.0, false, false, 0});
   }
   return show;
 }
@@ -89,7 +90,7 @@ TEST(FrameComposer, ShowsTheRestShapeOfAnEmptyClip) {
   ASSERT_EQ(picture.items.size(), 1U);
   EXPECT_EQ(picture.items[0].key_count, 1U);
   EXPECT_EQ(picture.items[0].weight[0], 1.0F);
-  EXPECT_EQ(picture.items[0].key[0].block.data(), actor->rest->block().data());
+  EXPECT_EQ(picture.items[0].key[0].block.data(), actor->model->rest->block().data());
 }
 
 TEST(FrameComposer, LeavesOutWhatIsHidden) {
@@ -143,7 +144,7 @@ TEST(FrameComposer, TellsOfAMeshOnlyOnce) {
 
   composer.compose(show_of({b}, 1.5), {}, kWide, picture);
   ASSERT_EQ(picture.items.size(), 1U);
-  EXPECT_EQ(picture.items[0].mesh->owner, b->mesh) << "another mesh in the place of the first";
+  EXPECT_EQ(picture.items[0].mesh->owner, b->model) << "another mesh in the place of the first";
   const std::weak_ptr<const render::MeshSource> let_go = of_a;
   EXPECT_EQ(let_go.use_count(), 1) << "only this test holds what is not shown any more";
 }
@@ -153,13 +154,13 @@ TEST(FrameComposer, TellsOfAMeshAllThatItIs) {
   const render::Picture picture = composed(show_of({actor}, 0.0));
   const render::MeshSource& source = *picture.items[0].mesh;
   EXPECT_EQ(source.vertex_count, 4U);
-  EXPECT_EQ(source.indices.data(), actor->mesh->indices().data());
+  EXPECT_EQ(source.indices.data(), actor->model->mesh->indices().data());
   EXPECT_TRUE(source.texcoords.empty());
   ASSERT_EQ(source.parts.size(), 1U) << "without parts: all of it, of a plain material";
   EXPECT_EQ(source.parts[0].index_count, 6U);
   ASSERT_EQ(source.materials.size(), 1U);
   EXPECT_EQ(source.materials[0].base_color, model::Material{}.base_color);
-  EXPECT_EQ(source.owner, actor->mesh);
+  EXPECT_EQ(source.owner, actor->model);
 }
 
 TEST(FrameComposer, LooksThroughTheScenesCameraWithoutAnOwnOne) {

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "server/model/evaluate.hpp"
 #include "tests/streams/streaming.hpp"
 
 namespace tweend::streams {
@@ -44,10 +45,10 @@ RunningStage::Act seek_to(double time_s) {
 /// What the actor shows at a time of its first clip, as a payload.
 std::vector<float> vertices_at(const stage::SceneViewPtr& view, const std::string& actor, double time_s) {
   const model::ActorPtr at = view->scene->find_actor(actor);
-  std::vector<float> block(6 * at->mesh->vertex_count());
+  std::vector<float> block(6 * at->model->mesh->vertex_count());
   const std::span<float> out(block);
-  EXPECT_TRUE(
-      model::sample_vertices(*at, *at->clips[0], time_s, {out.first(block.size() / 2), out.subspan(block.size() / 2), {}}));
+  EXPECT_TRUE(model::Evaluator().vertices(*at, model::shown_clip(at->clips[0], time_s),
+                                          {out.first(block.size() / 2), out.subspan(block.size() / 2), {}}));
   return block;
 }
 
@@ -296,7 +297,7 @@ TEST(Producer, ShowsAnEditWithItsRevision) {
   s.sink->wait_for(kStream, 1);
   const model::ActorPtr square = s.stage.view()->scene->actors[0];
   model::Keyframe first = square->clips[0]->keyframes[0];
-  first.vertices = square_at(*square->mesh, -4.0F);
+  first.vertices = square_at(*square->model->mesh, -4.0F);
   ASSERT_TRUE(s.stage.edit(stage::SetKeyframe{"square", "default", first.id, stage::TimedKeyframe{0.0, first}}));
   const PacketPtr edited = s.sink->wait_for(kStream, 2)[1];
   EXPECT_EQ(edited->header.flags, kFlagKey | kFlagDiscontinuity | kFlagLast);
@@ -327,7 +328,7 @@ TEST(Producer, ShowsTheRestShapeOfAClipWithoutKeyframes) {
   const PacketPtr packet = s.sink->wait_for(kStream, 1)[0];
   EXPECT_EQ(packet->header.flags, kFlagKey | kFlagLast);
   EXPECT_EQ(packet->header.media_us, 0);
-  const auto rest = s.stage.view()->scene->actors[0]->rest;
+  const auto rest = s.stage.view()->scene->actors[0]->model->rest;
   EXPECT_TRUE(std::equal(rest->positions().begin(), rest->positions().end(), packet->payload.floats().begin()));
 }
 

@@ -51,9 +51,9 @@ inline model::ActorPtr square_actor(std::string name, const std::vector<ClipPart
   auto actor = std::make_shared<model::Actor>();
   actor->name = std::move(name);
   actor->source = "mesh";
-  actor->mesh = square_mesh();
-  actor->rest = square_at(*actor->mesh, 0.0F);
-  for (const ClipParts& parts : clips) actor->clips.push_back(rising_clip(*actor->mesh, parts));
+  const model::MeshPtr mesh = square_mesh();
+  actor->model = std::make_shared<const model::Model>(model::Model{mesh, square_at(*mesh, 0.0F), {}, {}, {}});
+  for (const ClipParts& parts : clips) actor->clips.push_back(rising_clip(*mesh, parts));
   return actor;
 }
 
