@@ -241,5 +241,22 @@ TEST(LayerFade, ShowsNoMoreThanThereIsRoomFor) {
   EXPECT_EQ(show_actor(actor, player, kSecond).shown.layers.size(), model::kMostLayers);
 }
 
+TEST(ShowActor, TakesNoMemoryHoweverMuchFades) {
+  std::vector<model::Layer> layers;
+  for (char c = 'a'; c < 'a' + 16; ++c) layers.push_back(layer(std::string(1, c).c_str(), 1.0F));
+  const model::ActorPtr actor = layered(layers);
+  Player player = on_base();
+  for (int i = 0; i < 16; ++i) {
+    const model::Layer gone = layer(("a ghost with a long name " + std::to_string(i)).c_str(), 1.0F);
+    player.fade_layer(gone.name, &gone, nullptr, 10.0, 0);
+  }
+  for (std::size_t i = 0; i < model::kMostFades; ++i) fade_to(player, actor, i % 2 == 0 ? "wave" : "base", 10.0, 0);
+  ActorShow show;
+  const std::size_t before = test::allocations();
+  for (ClockUs at = 0; at < kSecond; at += 10'000) show = show_actor(actor, player, at);
+  EXPECT_EQ(test::allocations(), before);
+  EXPECT_EQ(show.shown.clips.size(), model::kMostFades + 1);
+}
+
 }  // namespace
 }  // namespace tweend::stage
