@@ -60,9 +60,9 @@ Status load_asset(const commands::Services& services, const std::string& asset) 
   return run_edit(services, "actor.add", json);
 }
 
-Status play_all(const commands::Services& services) {
-  const Command& command = *commands::find_command("playback.play");
-  TWEEND_ASSIGN(const commands::Params params, parameters(command, "{}", services.limits));
+Status run_players(const commands::Services& services, std::string_view method, const std::string& json) {
+  const Command& command = *commands::find_command(method);
+  TWEEND_ASSIGN(const commands::Params params, parameters(command, json, services.limits));
   std::promise<Status> promise;
   services.stage.change_players(
       "main", [&](const stage::PlayersTurn& turn) { return command.players(params.get(), turn); },
@@ -71,5 +71,16 @@ Status play_all(const commands::Services& services) {
       });
   return promise.get_future().get();
 }
+
+Status show_clip(const commands::Services& services, const std::string& actor, const std::string& clip) {
+  std::string json = R"({"time":0,"actor":)";
+  protocol::append_json_string(actor, json);
+  std::string play = json + R"(,"clip":)";
+  protocol::append_json_string(clip, play);
+  TWEEND_TRY(run_players(services, "playback.play", play + '}'));
+  return run_players(services, "playback.pause", R"({"actor":)" + json.substr(json.rfind(':') + 1) + '}');
+}
+
+Status play_all(const commands::Services& services) { return run_players(services, "playback.play", "{}"); }
 
 }  // namespace tweend::app

@@ -51,6 +51,19 @@ struct SceneChanged {
   }
 };
 
+struct AssetProgress {
+  static constexpr std::string_view kName = "AssetProgress";
+  std::string scene, actor, asset;
+  double fraction = 0.0;
+  static void describe(FieldList<AssetProgress>& f) {
+    using T = AssetProgress;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::actor>("actor", "The actor that is to be.");
+    f.add<&T::asset>("asset", "What is read for it.");
+    f.add<&T::fraction>("fraction", "How much of it is done, 0 to 1.");
+  }
+};
+
 template <class T>
 std::string notification(std::string_view method, const T& params) {
   return protocol::notification_json(method, protocol::encode(params));
@@ -91,6 +104,10 @@ void EventHub::tell(std::string scene, std::string json, Order order) {
       order == Order::AfterPackets ? peer->send_after_packets(shared) : peer->send_shared(shared);
     }
   });
+}
+
+void EventHub::importing(const std::string& scene, const std::string& actor, const std::string& asset, double fraction) {
+  tell(scene, notification("asset.progress", AssetProgress{scene, actor, asset, fraction}), Order::AtOnce);
 }
 
 void EventHub::published(const std::string& scene, const stage::SceneViewPtr& view) { hub_.follow(scene, view); }
