@@ -60,8 +60,7 @@ std::string report_skeleton(const model::Skeleton& skeleton) {
 
 std::string describe(const model::Material& m) {
   const auto byte = [](float c) { return static_cast<int>(std::lround(std::clamp(c, 0.0F, 1.0F) * 255.0F)); };
-  std::string text =
-      fmt::format("#{:02x}{:02x}{:02x}", byte(m.base_color.r), byte(m.base_color.g), byte(m.base_color.b));
+  std::string text = fmt::format("#{:02x}{:02x}{:02x}", byte(m.base_color.r), byte(m.base_color.g), byte(m.base_color.b));
   if (m.base_color_texture) {
     text += fmt::format(", texture {} x {}", m.base_color_texture->width(), m.base_color_texture->height());
   }
@@ -72,11 +71,11 @@ std::string describe(const model::Material& m) {
 
 std::string report_mesh(const model::Mesh& mesh, const model::VertexKey& rest) {
   const model::Bounds& b = rest.bounds();
-  std::string text = fmt::format("Mesh: {}, {}\n  within ({:.4g} {:.4g} {:.4g}) and ({:.4g} {:.4g} {:.4g}), at rest{}{}\n",
-                                 counted(mesh.vertex_count(), "vertex"), counted(mesh.triangle_count(), "triangle"), b.min.x,
-                                 b.min.y, b.min.z, b.max.x, b.max.y, b.max.z,
-                                 mesh.texcoords().empty() ? "" : ", with texture coordinates",
-                                 mesh.colors().empty() ? "" : ", with vertex colours");
+  std::string text =
+      fmt::format("Mesh: {}, {}\n  within ({:.4g} {:.4g} {:.4g}) and ({:.4g} {:.4g} {:.4g}), at rest{}{}\n",
+                  counted(mesh.vertex_count(), "vertex"), counted(mesh.triangle_count(), "triangle"), b.min.x, b.min.y, b.min.z,
+                  b.max.x, b.max.y, b.max.z, mesh.texcoords().empty() ? "" : ", with texture coordinates",
+                  mesh.colors().empty() ? "" : ", with vertex colours");
   const model::Surface& surface = mesh.surface();
   std::vector<std::size_t> triangles(surface.materials.size(), 0);
   for (const model::MeshPart& part : surface.parts) triangles[part.material] += part.index_count / 3;
@@ -91,8 +90,8 @@ std::string report_mesh(const model::Mesh& mesh, const model::VertexKey& rest) {
 std::string report_morphs(const model::MorphTargets& morphs) {
   Lines lines;
   for (const model::MorphTarget& t : morphs.targets()) {
-    lines.push_back(fmt::format("{}: at first {:.3g}, {}", printable(t.name), t.default_weight,
-                                counted(t.positions.size() / 3, "vertex")));
+    lines.push_back(
+        fmt::format("{}: at first {:.3g}, {}", printable(t.name), t.default_weight, counted(t.positions.size() / 3, "vertex")));
   }
   return fmt::format("Morph targets: {}\n", lines.size()) + joined(lines);
 }
@@ -146,9 +145,9 @@ std::string report_facts(const assets::GltfFacts& f) {
   std::string text = fmt::format("glTF {}", printable(f.version));
   if (!f.generator.empty()) text += fmt::format(", written by {}", printable(f.generator));
   text += fmt::format("\n  {}, {}, {}, {}, {}, {}, {}, {}, {}\n", counted(f.scenes, "scene"), counted(f.nodes, "node"),
-                      counted(f.meshes, "mesh"), counted(f.skins, "skin"),
-                      counted(f.animations, "animation"), counted(f.materials, "material"), counted(f.textures, "texture"),
-                      counted(f.images, "image"), counted(f.cameras, "camera"));
+                      counted(f.meshes, "mesh"), counted(f.skins, "skin"), counted(f.animations, "animation"),
+                      counted(f.materials, "material"), counted(f.textures, "texture"), counted(f.images, "image"),
+                      counted(f.cameras, "camera"));
   for (const std::string& extension : f.extensions_used) {
     const bool required =
         std::find(f.extensions_required.begin(), f.extensions_required.end(), extension) != f.extensions_required.end();

@@ -151,8 +151,8 @@ Result<ObjModel> AssetLibrary::import_file(const AssetRoot& root, std::string_vi
   return build(root, name, {&file, 1}, {&kFrame, 1}, limits_.asset_bytes - text.size());
 }
 
-Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
-                                               std::vector<SequenceFile> members, const ImportProgress& progress) const {
+Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name, std::vector<SequenceFile> members,
+                                               const ImportProgress& progress) const {
   TWEEND_ASSIGN(members, order_sequence(std::move(members)));
   if (total_bytes(members) > limits_.asset_bytes) return too_many_bytes(name, limits_.asset_bytes);
   if (members.size() > limits_.keyframes_per_clip) {

@@ -20,7 +20,7 @@ namespace tweend::assets {
 
 /// What is asked of an import.
 struct ImportOptions {
-  double fps = 24.0;         ///< of an OBJ sequence: how many frames make a second
+  double fps = 24.0;          ///< of an OBJ sequence: how many frames make a second
   ImportProgress progress{};  ///< may be empty
 };
 
@@ -64,7 +64,7 @@ class AssetLibrary {
  private:
   [[nodiscard]] Result<model::ImportedModel> find_and_import(std::string_view name, const ImportOptions& options = {}) const;
   [[nodiscard]] Result<std::optional<model::ImportedModel>> import_from(const AssetRoot& root, std::string_view name,
-                                                                    const ImportOptions& options) const;
+                                                                        const ImportOptions& options) const;
   [[nodiscard]] Result<model::ImportedModel> import_gltf(const AssetRoot& root, std::string_view name,
                                                          const ImportOptions& options) const;
   [[nodiscard]] Result<ObjModel> import_file(const AssetRoot& root, std::string_view name) const;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 #include <cstddef>
-#include <glm/vec3.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
 #include <optional>
 
 namespace tweend::assets {

@@ -95,13 +95,12 @@ Result<GltfAccessor> GltfAccessors::describe(const JsonNode& reference, const Gl
   TWEEND_ASSIGN(const JsonNode type, node.get("type"));
   TWEEND_ASSIGN(const std::string_view type_text, type.text());
   if (type_text != rule.type) return type.expected(fmt::format("{} for {}", rule.type, reference.pointer()));
-  accessor.width =
-      std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeName& t) { return t.name == rule.type; })->width;
+  accessor.width = std::find_if(kTypes.begin(), kTypes.end(), [&](const TypeName& t) { return t.name == rule.type; })->width;
   TWEEND_ASSIGN(accessor.number.component, read_component(node));
   TWEEND_ASSIGN(accessor.number.normalized, node.boolean_or("normalized", false));
   if (std::find(rule.numbers.begin(), rule.numbers.end(), accessor.number) == rule.numbers.end()) {
-    return node.error(fmt::format("expected the componentType {} for {}, found {}", names_of(rule.numbers),
-                                  reference.pointer(), name_of(accessor.number)));
+    return node.error(fmt::format("expected the componentType {} for {}, found {}", names_of(rule.numbers), reference.pointer(),
+                                  name_of(accessor.number)));
   }
   TWEEND_ASSIGN(const JsonNode count, node.get("count"));
   TWEEND_ASSIGN(accessor.count, count.whole(1, kMostElements));
@@ -154,7 +153,8 @@ Status GltfAccessors::check_backed(const GltfAccessor& accessor) {
 Result<GltfAccessors::Bytes> GltfAccessors::dense(const GltfAccessor& accessor) {
   if (!accessor.node.find("bufferView")) return Bytes(accessor.count * accessor.element_bytes());
   TWEEND_ASSIGN(const JsonNode count, accessor.node.get("count"));
-  TWEEND_ASSIGN(const Run run, locate(accessor.node, count, accessor.count, accessor.number.component, accessor.element_bytes()));
+  TWEEND_ASSIGN(const Run run,
+                locate(accessor.node, count, accessor.count, accessor.number.component, accessor.element_bytes()));
   return run.gather();
 }
 
@@ -220,8 +220,7 @@ Result<std::vector<float>> GltfAccessors::floats(const GltfAccessor& accessor) {
   const auto bad = std::find_if(out.begin(), out.end(), [](float v) { return !std::isfinite(v); });
   if (bad == out.end()) return out;
   const auto at = static_cast<std::size_t>(bad - out.begin());
-  return accessor.node.error(
-      fmt::format("expected finite numbers, found {} in element {}", *bad, at / accessor.width));
+  return accessor.node.error(fmt::format("expected finite numbers, found {} in element {}", *bad, at / accessor.width));
 }
 
 Result<std::vector<std::uint32_t>> GltfAccessors::wholes(const GltfAccessor& accessor) {

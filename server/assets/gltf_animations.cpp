@@ -69,7 +69,12 @@ class AnimationReader {
  public:
   AnimationReader(const GltfFile& file, const GltfScene& scene, const GltfMesh& mesh, GltfAccessors& accessors,
                   const Limits& limits, GltfWarnings& warnings)
-      : file_(file), scene_(scene), mesh_(mesh), accessors_(accessors), limits_(limits), warnings_(warnings),
+      : file_(file),
+        scene_(scene),
+        mesh_(mesh),
+        accessors_(accessors),
+        limits_(limits),
+        warnings_(warnings),
         values_left_(limits.keyed_values) {}
 
   Result<model::Clip> read(const JsonNode& node, std::string name) {
@@ -142,8 +147,8 @@ class AnimationReader {
     TWEEND_ASSIGN(std::vector<float> times, accessors_.floats(accessor));
     for (std::size_t i = 0; i < times.size(); ++i) {
       if (times[i] < 0.0F || (i > 0 && times[i] <= times[i - 1])) {
-        return accessor.node.error(fmt::format("expected times >= 0, each beyond the one before; found {} at key {}{}", times[i],
-                                               i, i > 0 ? fmt::format(" behind {}", times[i - 1]) : ""));
+        return accessor.node.error(fmt::format("expected times >= 0, each beyond the one before; found {} at key {}{}",
+                                               times[i], i, i > 0 ? fmt::format(" behind {}", times[i - 1]) : ""));
       }
     }
     list_of_accessor_.emplace(accessor.node.position(), times_.size());
@@ -163,8 +168,8 @@ class AnimationReader {
     TWEEND_TRY(expect_count(accessor, keys * rows * target.count, output));
     if (keys * target.count > values_left_) {
       TWEEND_TRY(accessors_.check_backed(accessor));
-      return accessor.node.error(fmt::format("expected at most {} more keyed values, found {}", values_left_, keys * target.count),
-                                 ErrorCode::Limit);
+      return accessor.node.error(
+          fmt::format("expected at most {} more keyed values, found {}", values_left_, keys * target.count), ErrorCode::Limit);
     }
     values_left_ -= keys * target.count;
     TWEEND_ASSIGN(const std::vector<float> floats, accessors_.floats(accessor));
@@ -186,7 +191,8 @@ class AnimationReader {
       if (track.channel.property == Property::Rotation) {
         const glm::dvec4 wide(value);
         const double length = glm::length(wide);
-        if (!(length > 1e-30)) return node.error(fmt::format("expected unit quaternions, found one of length 0 at key {}", key));
+        if (!(length > 1e-30))
+          return node.error(fmt::format("expected unit quaternions, found one of length 0 at key {}", key));
         value = glm::vec4(wide / length);
       }
       track.values.push_back(value);

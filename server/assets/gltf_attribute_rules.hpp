@@ -59,15 +59,12 @@ inline constexpr GltfAccessorRule kWeightsRule{"VEC4", gltf_numbers::kFractions}
   return {"VEC2", gltf_numbers::kFractions};
 }
 /// @param opaque  of VEC3: red, green and blue
-[[nodiscard]] inline GltfAccessorRule color_rule(bool opaque) {
-  return {opaque ? "VEC3" : "VEC4", gltf_numbers::kFractions};
-}
+[[nodiscard]] inline GltfAccessorRule color_rule(bool opaque) { return {opaque ? "VEC3" : "VEC4", gltf_numbers::kFractions}; }
 
 /// @param reference  what names the accessor
 [[nodiscard]] inline Status expect_count(const GltfAccessor& accessor, std::size_t count, const JsonNode& reference) {
   if (accessor.count == count) return {};
-  return accessor.node.error(
-      fmt::format("expected {} elements for {}, found {}", count, reference.pointer(), accessor.count));
+  return accessor.node.error(fmt::format("expected {} elements for {}, found {}", count, reference.pointer(), accessor.count));
 }
 
 [[nodiscard]] inline Status expect_finite(std::span<const float> values, const JsonNode& of) {

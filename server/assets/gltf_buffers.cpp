@@ -37,7 +37,8 @@ Result<GltfBuffers::Bytes> GltfBuffers::load(const JsonNode& node) {
   } else {
     return node.error("expected a uri, or to be the first buffer of a .glb with a binary chunk; found neither");
   }
-  if (content.size() < bytes) return length.error(fmt::format("expected at most the {} bytes there are, found {}", content.size(), bytes));
+  if (content.size() < bytes)
+    return length.error(fmt::format("expected at most the {} bytes there are, found {}", content.size(), bytes));
   return std::as_bytes(std::span(content)).first(bytes);
 }
 
@@ -59,7 +60,8 @@ Result<GltfBuffers::Bytes> GltfBuffers::unpack(const JsonNode& view, const JsonN
   TWEEND_ASSIGN(const JsonNode length, view.get("byteLength"));
   TWEEND_ASSIGN(const std::size_t bytes, length.whole(1, kMostBytes));
   if (bytes != how.bytes()) {
-    return length.expected(fmt::format("{} bytes for the {} elements of {} bytes that are packed", how.bytes(), how.count, how.stride));
+    return length.expected(
+        fmt::format("{} bytes for the {} elements of {} bytes that are packed", how.bytes(), how.count, how.stride));
   }
   if (bytes > unpacked_bytes_left_) {
     return length.error(fmt::format("expected at most {} more bytes to be unpacked, found {}", unpacked_bytes_left_, bytes),

@@ -43,10 +43,10 @@ class GltfBuffers {
   const GltfFile& file_;
   GltfUris& uris_;
   std::size_t unpacked_bytes_left_;
-  std::map<std::size_t, std::string> fetched_;                 ///< buffers that are not in the file itself
-  std::map<std::size_t, Bytes> buffers_;                       ///< by index
+  std::map<std::size_t, std::string> fetched_;              ///< buffers that are not in the file itself
+  std::map<std::size_t, Bytes> buffers_;                    ///< by index
   std::map<std::size_t, std::vector<std::byte>> unpacked_;  ///< by index of the view
-  std::map<std::size_t, GltfView> views_;                      ///< by index
+  std::map<std::size_t, GltfView> views_;                   ///< by index
 };
 
 }  // namespace tweend::assets

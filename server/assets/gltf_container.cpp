@@ -78,7 +78,8 @@ class Chunks {
     }
     if (type == kJsonChunk) container.json = content;
     if (type != kBinChunk) return {};
-    if (number != 1) return refuse(at, fmt::format("expected one binary chunk, second in the file, found it at place {}", number + 1));
+    if (number != 1)
+      return refuse(at, fmt::format("expected one binary chunk, second in the file, found it at place {}", number + 1));
     container.bin = content;
     return {};
   }

@@ -63,8 +63,7 @@ Status GltfFile::check_extensions() const {
   for (std::size_t i = 0; i < required->size(); ++i) {
     TWEEND_ASSIGN(const std::string_view extension, required->at(i).text());
     if (std::find(kKnownExtensions.begin(), kKnownExtensions.end(), extension) == kKnownExtensions.end()) {
-      return required->at(i).expected(
-          fmt::format("no other required extension than {}", fmt::join(kKnownExtensions, ", ")));
+      return required->at(i).expected(fmt::format("no other required extension than {}", fmt::join(kKnownExtensions, ", ")));
     }
   }
   return {};

@@ -24,8 +24,13 @@ class MeshBuilder {
  public:
   MeshBuilder(const GltfFile& file, const GltfScene& scene, GltfAccessors& accessors, GltfPrimitives& primitives,
               GltfMaterials& materials, const Limits& limits, GltfProgress& progress)
-      : file_(file), scene_(scene), skins_(file, scene, accessors), primitives_(primitives), materials_(materials),
-        limits_(limits), progress_(progress),
+      : file_(file),
+        scene_(scene),
+        skins_(file, scene, accessors),
+        primitives_(primitives),
+        materials_(materials),
+        limits_(limits),
+        progress_(progress),
         room_{limits.vertices_per_actor, limits.triangles_per_actor, limits.morphed_vertices} {
     out_.weights_of_node.resize(file.count("nodes"));
   }
@@ -177,7 +182,8 @@ class MeshBuilder {
   Status finish() {
     const auto own_error = [&](const Error& e) { return file_.root().error(e.message); };
     model::Surface surface{materials_.take(), std::move(parts_)};
-    auto mesh = model::Mesh::make(vertices(), std::move(indices_), std::move(texcoords_), std::move(surface), std::move(colors_));
+    auto mesh =
+        model::Mesh::make(vertices(), std::move(indices_), std::move(texcoords_), std::move(surface), std::move(colors_));
     if (!mesh) return own_error(mesh.error());
     out_.mesh = *mesh;
     auto rest = model::VertexKey::make(**mesh, positions_, normals_);

@@ -74,8 +74,7 @@ Status flatten(const JsonNode& node, GltfRoom& room, GltfPrimitive& p) {
 
 }  // namespace
 
-GltfPrimitives::GltfPrimitives(const GltfFile& file, GltfAccessors& accessors, GltfMaterials& materials,
-                               GltfWarnings& warnings)
+GltfPrimitives::GltfPrimitives(const GltfFile& file, GltfAccessors& accessors, GltfMaterials& materials, GltfWarnings& warnings)
     : accessors_(accessors), materials_(materials), warnings_(warnings), quantized_(file.uses("KHR_mesh_quantization")) {}
 
 Result<std::optional<GltfPrimitive>> GltfPrimitives::read(const JsonNode& node, GltfRoom& room) {
@@ -134,8 +133,9 @@ Status GltfPrimitives::read_indices(const JsonNode& node, std::size_t mode, Gltf
     const auto bad =
         std::find_if(list.begin(), list.end(), [&](std::uint32_t i) { return i >= out.vertex_count() || i == restart; });
     if (bad != list.end()) {
-      return accessor.node.error(fmt::format("expected indices below the {} vertices (and below {}, which restarts), found {} at place {}",
-                                             out.vertex_count(), restart, *bad, bad - list.begin()));
+      return accessor.node.error(
+          fmt::format("expected indices below the {} vertices (and below {}, which restarts), found {} at place {}",
+                      out.vertex_count(), restart, *bad, bad - list.begin()));
     }
   } else {
     if (out.vertex_count() > most) return no_room(node, "triangles", room.triangles, out.vertex_count() / 3);
@@ -143,8 +143,8 @@ Status GltfPrimitives::read_indices(const JsonNode& node, std::size_t mode, Gltf
     std::iota(list.begin(), list.end(), 0U);
   }
   if (list.size() < 3 || (mode == kTriangles && list.size() % 3 != 0)) {
-    return reference.value_or(node).error(
-        fmt::format("expected {}, found {}", mode == kTriangles ? "three vertices a triangle" : "at least three vertices", list.size()));
+    return reference.value_or(node).error(fmt::format(
+        "expected {}, found {}", mode == kTriangles ? "three vertices a triangle" : "at least three vertices", list.size()));
   }
   out.indices = triangulate(std::move(list), mode);
   room.triangles -= out.indices.size() / 3;
@@ -188,7 +188,8 @@ Status GltfPrimitives::read_colors(const JsonNode& attributes, GltfPrimitive& ou
 Status GltfPrimitives::read_influences(const JsonNode& attributes, GltfPrimitive& out) {
   if (!attributes.find("JOINTS_0")) return {};
   const bool second = attributes.find("JOINTS_1").has_value();
-  if (attributes.find("JOINTS_2")) warnings_.add(attributes, "expected at most 8 joints a vertex, found more: they are left out");
+  if (attributes.find("JOINTS_2"))
+    warnings_.add(attributes, "expected at most 8 joints a vertex, found more: they are left out");
   out.influences = second ? 8 : 4;
   out.joints.resize(out.influences * out.vertex_count());
   out.weights.resize(out.joints.size());
@@ -219,7 +220,8 @@ Status GltfPrimitives::read_targets(const JsonNode& node, GltfRoom& room, GltfPr
   TWEEND_TRY(targets->expect_array());
   const std::size_t vertices = out.vertex_count();
   for (std::size_t i = 0; i < targets->size(); ++i) {
-    if (vertices > room.morphed_vertices) return no_room(targets->at(i), "vertices of morph targets", room.morphed_vertices, vertices);
+    if (vertices > room.morphed_vertices)
+      return no_room(targets->at(i), "vertices of morph targets", room.morphed_vertices, vertices);
     room.morphed_vertices -= vertices;
     TWEEND_TRY(targets->at(i).expect_object());
     GltfTarget target;

@@ -47,13 +47,12 @@ Result<model::ImportedModel> read_gltf(std::string_view bytes, const std::string
   TWEEND_ASSIGN(GltfScene scene, read_gltf_scene(file, limits, warnings));
   GltfProgress progress(std::move(tell), count_parts(file, scene));
   TWEEND_ASSIGN(GltfMesh mesh, read_gltf_mesh(file, scene, accessors, primitives, materials, limits, progress));
-  TWEEND_ASSIGN(std::vector<model::Clip> clips,
-                read_gltf_animations(file, scene, mesh, accessors, limits, warnings, progress));
+  TWEEND_ASSIGN(std::vector<model::Clip> clips, read_gltf_animations(file, scene, mesh, accessors, limits, warnings, progress));
   if (clips.empty()) clips = model::empty_clips();
   auto skeleton = model::Skeleton::make(std::move(scene.joints));
   if (!skeleton) return file.root().error(skeleton.error().message);
-  auto model = std::make_shared<const model::Model>(model::Model{std::move(mesh.mesh), std::move(mesh.rest), std::move(*skeleton),
-                                                                 std::move(mesh.skin), std::move(mesh.morphs)});
+  auto model = std::make_shared<const model::Model>(model::Model{
+      std::move(mesh.mesh), std::move(mesh.rest), std::move(*skeleton), std::move(mesh.skin), std::move(mesh.morphs)});
   return model::ImportedModel{name, std::move(model), std::move(clips), warnings.take()};
 }
 

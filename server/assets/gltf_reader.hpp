@@ -33,7 +33,8 @@ struct GltfFacts {
   std::string generator;
   std::vector<std::string> extensions_used;
   std::vector<std::string> extensions_required;
-  std::size_t scenes = 0, nodes = 0, meshes = 0, skins = 0, animations = 0, materials = 0, textures = 0, images = 0, cameras = 0;
+  std::size_t scenes = 0, nodes = 0, meshes = 0, skins = 0, animations = 0, materials = 0, textures = 0, images = 0,
+              cameras = 0;
 };
 
 /// @return as read_gltf, for what is wrong with the container or the JSON itself

@@ -40,8 +40,8 @@ class SceneReader {
       for (std::size_t c = 0; c < children->size(); ++c) {
         TWEEND_ASSIGN(const std::size_t child, children->at(c).index(parent_.size(), "nodes"));
         if (parent_[child] != kNone) {
-          return children->at(c).error(fmt::format("expected a node without another parent, found /nodes/{}, a child of /nodes/{}",
-                                                   child, parent_[child]));
+          return children->at(c).error(fmt::format(
+              "expected a node without another parent, found /nodes/{}, a child of /nodes/{}", child, parent_[child]));
         }
         parent_[child] = i;
       }

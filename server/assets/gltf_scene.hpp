@@ -14,8 +14,8 @@ namespace tweend::assets {
 
 /// The nodes of a file's default scene, which are the joints of the actor: depth first, children in their order.
 struct GltfScene {
-  std::vector<JsonNode> nodes;        ///< shape [joints]
-  std::vector<model::Joint> joints;   ///< shape [joints]; parents stand before their children
+  std::vector<JsonNode> nodes;       ///< shape [joints]
+  std::vector<model::Joint> joints;  ///< shape [joints]; parents stand before their children
   /// shape [nodes of the file]; nothing: not in the scene
   std::vector<std::optional<std::uint32_t>> joint_of_node;
 };

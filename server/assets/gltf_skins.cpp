@@ -40,7 +40,8 @@ Result<GltfSkins::Run> GltfSkins::skin(const JsonNode& reference) {
     }
     TWEEND_TRY(accessors_.check_backed(accessor));
     if (accessor.count > kMostEntries) {
-      return accessor.node.error(fmt::format("expected at most {} matrices, found {}", kMostEntries, accessor.count), ErrorCode::Limit);
+      return accessor.node.error(fmt::format("expected at most {} matrices, found {}", kMostEntries, accessor.count),
+                                 ErrorCode::Limit);
     }
     TWEEND_ASSIGN(matrices, accessors_.floats(accessor));
   }

@@ -13,8 +13,8 @@ namespace tweend::assets {
 struct GltfTrack {
   animation::Channel channel;
   animation::Interpolation interpolation = animation::Interpolation::Linear;
-  std::size_t times = 0;                     ///< which of the lists of times are its own
-  std::vector<glm::vec4> values;             ///< shape [those times]
+  std::size_t times = 0;                       ///< which of the lists of times are its own
+  std::vector<glm::vec4> values;               ///< shape [those times]
   std::vector<model::KeyedTangents> tangents;  ///< the same shape, or empty
 };
 

@@ -69,7 +69,8 @@ Result<animation::JointPose> read_matrix(const JsonNode& matrix, GltfWarnings& w
   }
   animation::JointPose pose;
   pose.translation = {m[12], m[13], m[14]};
-  const std::array<glm::dvec3, 3> axes{glm::dvec3(m[0], m[1], m[2]), glm::dvec3(m[4], m[5], m[6]), glm::dvec3(m[8], m[9], m[10])};
+  const std::array<glm::dvec3, 3> axes{glm::dvec3(m[0], m[1], m[2]), glm::dvec3(m[4], m[5], m[6]),
+                                       glm::dvec3(m[8], m[9], m[10])};
   if (!take_apart(axes, pose)) {
     warnings.add(matrix, "expected a matrix of translation, rotation and scale, found a shear too, which is left out");
   }

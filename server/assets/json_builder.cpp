@@ -74,8 +74,8 @@ bool JsonBuilder::end() {
   JsonDocument::Value& value = pending_[at];
   if (value.kind == JsonKind::Object) {
     if (const auto key = repeated_key(at + 1)) {
-      return refuse(ErrorCode::BadAsset, fmt::format("expected each name once in a JSON object, found {} twice",
-                                                     quoted_token(*key)));
+      return refuse(ErrorCode::BadAsset,
+                    fmt::format("expected each name once in a JSON object, found {} twice", quoted_token(*key)));
     }
   }
   value.first = static_cast<std::uint32_t>(document_.values_.size());

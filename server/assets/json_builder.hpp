@@ -37,8 +37,8 @@ class JsonBuilder {
 
   JsonDocument& document_;
   std::size_t most_deep_;
-  std::vector<JsonDocument::Value> pending_;                     ///< whose parent isn't complete
-  std::vector<std::size_t> open_;                                ///< places in pending_ of what isn't complete itself
+  std::vector<JsonDocument::Value> pending_;                    ///< whose parent isn't complete
+  std::vector<std::size_t> open_;                               ///< places in pending_ of what isn't complete itself
   std::optional<std::pair<std::uint32_t, std::uint32_t>> key_;  ///< of the next value
   std::optional<Error> error_;
 };

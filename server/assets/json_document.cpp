@@ -30,9 +30,7 @@ class Events final : public nlohmann::json_sax<nlohmann::json> {
   explicit Events(JsonBuilder& builder) : builder_(builder) {}
   bool null() override { return builder_.scalar(JsonKind::Null); }
   bool boolean(bool value) override { return builder_.scalar(JsonKind::Boolean, value ? 1.0 : 0.0); }
-  bool number_integer(number_integer_t value) override {
-    return builder_.scalar(JsonKind::Number, static_cast<double>(value));
-  }
+  bool number_integer(number_integer_t value) override { return builder_.scalar(JsonKind::Number, static_cast<double>(value)); }
   bool number_unsigned(number_unsigned_t value) override {
     return builder_.scalar(JsonKind::Number, static_cast<double>(value));
   }
@@ -119,8 +117,8 @@ Result<bool> JsonNode::boolean() const {
 
 Result<std::size_t> JsonNode::whole(std::size_t least, std::size_t most) const {
   const double n = value().number;
-  const bool fits = kind() == JsonKind::Number && n == std::floor(n) && n >= static_cast<double>(least) &&
-                    n <= static_cast<double>(most);
+  const bool fits =
+      kind() == JsonKind::Number && n == std::floor(n) && n >= static_cast<double>(least) && n <= static_cast<double>(most);
   if (!fits) return expected(fmt::format("a whole number from {} to {}", least, most));
   return static_cast<std::size_t>(n);
 }
@@ -201,7 +199,9 @@ std::string JsonNode::place() const {
   return quoted_name(document_->name_) + (at.empty() ? "" : " ") + at;
 }
 
-Error JsonNode::error(std::string_view message, ErrorCode code) const { return fail(code, place() + ": " + std::string(message)); }
+Error JsonNode::error(std::string_view message, ErrorCode code) const {
+  return fail(code, place() + ": " + std::string(message));
+}
 
 Error JsonNode::expected(std::string_view expected) const {
   return error(fmt::format("expected {}, found {}", expected, describe()));

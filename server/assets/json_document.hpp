@@ -34,12 +34,12 @@ class JsonDocument {
   /// Values of one array or object stand side by side. A value holds no more than it must: a small file may have many.
   struct Value {
     JsonKind kind = JsonKind::Null;
-    std::uint32_t parent = 0;      ///< of the root: itself
-    std::uint32_t key_at = 0;      ///< in text_; of an object's members
+    std::uint32_t parent = 0;  ///< of the root: itself
+    std::uint32_t key_at = 0;  ///< in text_; of an object's members
     std::uint32_t key_bytes = 0;
-    std::uint32_t first = 0;       ///< the first child; of a text: where it stands in text_
-    std::uint32_t count = 0;       ///< children; bytes of a text
-    double number = 0.0;           ///< of a boolean: 0 or 1
+    std::uint32_t first = 0;  ///< the first child; of a text: where it stands in text_
+    std::uint32_t count = 0;  ///< children; bytes of a text
+    double number = 0.0;      ///< of a boolean: 0 or 1
   };
 
   JsonDocument() = default;
@@ -57,7 +57,9 @@ class JsonNode {
   /// Items of an array, members of an object; else 0.
   [[nodiscard]] std::size_t size() const noexcept;
   /// Precondition: i < size().
-  [[nodiscard]] JsonNode at(std::size_t i) const noexcept { return {*document_, value().first + static_cast<std::uint32_t>(i)}; }
+  [[nodiscard]] JsonNode at(std::size_t i) const noexcept {
+    return {*document_, value().first + static_cast<std::uint32_t>(i)};
+  }
   /// An object's member of that name, if there is one.
   [[nodiscard]] std::optional<JsonNode> find(std::string_view key) const noexcept;
   /// The same, with an error where there is none.

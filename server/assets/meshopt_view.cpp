@@ -80,8 +80,7 @@ Result<MeshoptView> read_meshopt_view(const JsonNode& extension) {
   TWEEND_ASSIGN(const JsonNode mode, extension.get("mode"));
   TWEEND_ASSIGN(view.mode, pick<MeshoptView::Mode>(mode, Names3{"ATTRIBUTES", "TRIANGLES", "INDICES"}));
   if (const auto filter = extension.find("filter")) {
-    TWEEND_ASSIGN(view.filter,
-                  pick<MeshoptView::Filter>(*filter, Names4{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"}));
+    TWEEND_ASSIGN(view.filter, pick<MeshoptView::Filter>(*filter, Names4{"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"}));
     if (view.mode != MeshoptView::Mode::Attributes && view.filter != MeshoptView::Filter::None) {
       return filter->expected("NONE, since only the mode ATTRIBUTES has filters");
     }

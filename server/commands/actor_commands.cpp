@@ -128,7 +128,8 @@ Status check_clip_fields(const ActorAddParams& p, const model::ImportedModel& im
   if (!imported.model->skeleton) return {};
   const char* const given = p.fps ? "fps" : p.closed ? "closed" : p.duration ? "duration" : nullptr;
   if (given == nullptr) return {};
-  return fail(ErrorCode::InvalidParams, fmt::format("expected {} with an OBJ file or sequence only, found it with a glTF file", given),
+  return fail(ErrorCode::InvalidParams,
+              fmt::format("expected {} with an OBJ file or sequence only, found it with a glTF file", given),
               fmt::format("params.{}", given));
 }
 

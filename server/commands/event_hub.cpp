@@ -61,6 +61,8 @@ struct AssetProgress {
     f.add<&T::actor>("actor", "The actor that is to be.");
     f.add<&T::asset>("asset", "What is read for it.");
     f.add<&T::fraction>("fraction", "How much of it is done, 0 to 1.");
+  }
+};
 
 struct MarkerCrossed {
   static constexpr std::string_view kName = "MarkerCrossed";

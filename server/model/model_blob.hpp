@@ -8,8 +8,8 @@
 
 namespace tweend::model {
 
-/// An imported model in one flat piece of memory: what an import hands over, wherever it ran. It holds mesh, vertices, skeleton,
-/// skin, morph targets, materials with their images, clips and warnings.
+/// An imported model in one flat piece of memory: what an import hands over, wherever it ran. It holds mesh, vertices,
+/// skeleton, skin, morph targets, materials with their images, clips and warnings.
 ///
 /// Little-endian, without gaps: the magic "TWMB", the version of this form, the length of all, then the parts in the order in
 /// which read_model_blob takes them, each run of numbers and each text behind its length. It is for one build's own use and

@@ -1,7 +1,7 @@
-#include <cmath>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "server/model/blob_bytes.hpp"

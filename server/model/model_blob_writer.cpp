@@ -16,7 +16,9 @@ class Numbers {
       values_.push_back(value.get());
     }
   }
-  [[nodiscard]] std::uint32_t of(const std::shared_ptr<const T>& value) const { return value ? numbers_.at(value.get()) : kNoNumber; }
+  [[nodiscard]] std::uint32_t of(const std::shared_ptr<const T>& value) const {
+    return value ? numbers_.at(value.get()) : kNoNumber;
+  }
   [[nodiscard]] const std::vector<const T*>& values() const noexcept { return values_; }
 
  private:

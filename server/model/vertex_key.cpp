@@ -89,9 +89,8 @@ Result<VertexKeyPtr> VertexKey::from_block(const Mesh& mesh, std::vector<float> 
   const std::size_t expected = (mesh.texcoords().empty() ? 6 : 9) * mesh.vertex_count();
   const bool finite = std::all_of(block.begin(), block.end(), [](float v) { return std::isfinite(v); });
   if (block.size() != expected || !finite) {
-    return fail(ErrorCode::InvalidParams,
-                fmt::format("expected {} finite numbers for {} vertices, found {}", expected, mesh.vertex_count(),
-                            finite ? std::to_string(block.size()) : "others"));
+    return fail(ErrorCode::InvalidParams, fmt::format("expected {} finite numbers for {} vertices, found {}", expected,
+                                                      mesh.vertex_count(), finite ? std::to_string(block.size()) : "others"));
   }
   const std::shared_ptr<VertexKey> key(new VertexKey);
   key->vertex_count_ = mesh.vertex_count();

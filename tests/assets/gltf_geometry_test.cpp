@@ -69,10 +69,12 @@ std::vector<float> quantized(const std::vector<T>& values, bool normalized) {
 TEST(GltfAccessors, ReadEveryComponentType) {
   // The factors are those of the specification's table in section 3.11.
   EXPECT_THAT(quantized<std::int8_t>({-128, 127, 0, 1, 2, 3, 4, -5, 6}, false), ElementsAre(-128, 127, 0, 1, 2, 3, 4, -5, 6));
-  EXPECT_THAT(quantized<std::int8_t>({-128, 127, 0, 1, -127, 3, 4, -5, 6}, true),
-              Pointwise(FloatNear(1e-6F), {-1.0F, 1.0F, 0.0F, 1 / 127.0F, -1.0F, 3 / 127.0F, 4 / 127.0F, -5 / 127.0F, 6 / 127.0F}));
-  EXPECT_THAT(quantized<std::uint8_t>({0, 255, 51, 1, 2, 3, 9, 5, 6}, true),
-              Pointwise(FloatNear(1e-6F), {0.0F, 1.0F, 0.2F, 1 / 255.0F, 2 / 255.0F, 3 / 255.0F, 9 / 255.0F, 5 / 255.0F, 6 / 255.0F}));
+  EXPECT_THAT(
+      quantized<std::int8_t>({-128, 127, 0, 1, -127, 3, 4, -5, 6}, true),
+      Pointwise(FloatNear(1e-6F), {-1.0F, 1.0F, 0.0F, 1 / 127.0F, -1.0F, 3 / 127.0F, 4 / 127.0F, -5 / 127.0F, 6 / 127.0F}));
+  EXPECT_THAT(
+      quantized<std::uint8_t>({0, 255, 51, 1, 2, 3, 9, 5, 6}, true),
+      Pointwise(FloatNear(1e-6F), {0.0F, 1.0F, 0.2F, 1 / 255.0F, 2 / 255.0F, 3 / 255.0F, 9 / 255.0F, 5 / 255.0F, 6 / 255.0F}));
   EXPECT_THAT(quantized<std::int16_t>({-32768, 32767, 0, 1, 2, 3, 4, -5, 6}, false),
               ElementsAre(-32768, 32767, 0, 1, 2, 3, 4, -5, 6));
   EXPECT_FLOAT_EQ(quantized<std::int16_t>({-32768, 32767, 0, 1, 2, 3, 4, -5, 6}, true)[0], -1.0F);
@@ -174,8 +176,7 @@ std::vector<float> texcoords(const Json& transform) {
 
 TEST(GltfMaterials, BakeTheTransformOfATexture) {
   EXPECT_THAT(texcoords(nullptr), ElementsAre(0, 1, 1, 1, 0, 0));
-  EXPECT_THAT(texcoords({{"offset", {0.5, 0.25}}, {"scale", {2, 3}}}),
-              ElementsAre(0.5F, 0.75F, 2.5F, 0.75F, 0.5F, 1 - 3.25F));
+  EXPECT_THAT(texcoords({{"offset", {0.5, 0.25}}, {"scale", {2, 3}}}), ElementsAre(0.5F, 0.75F, 2.5F, 0.75F, 0.5F, 1 - 3.25F));
   // A quarter counter-clockwise as seen on the picture, where v runs down: (1 0) goes to (0 -1), (0 1) to (1 0).
   EXPECT_THAT(texcoords({{"rotation", std::acos(-1.0) / 2}}),
               Pointwise(FloatNear(1e-6F), {0.0F, 1.0F, 0.0F, 2.0F, 1.0F, 1.0F}));
@@ -186,13 +187,17 @@ std::size_t meshopt_view(GltfBuilder& b, const std::vector<unsigned char>& packe
                          const char* mode, const char* filter) {
   const std::size_t at = b.view(packed);
   const Json where = b.json["bufferViews"][at];
-  b.json["bufferViews"][at] = {
-      {"buffer", 1},
-      {"byteLength", count * stride},
-      {"extensions",
-       {{"EXT_meshopt_compression",
-         {{"buffer", 0}, {"byteOffset", where["byteOffset"]}, {"byteLength", where["byteLength"]}, {"byteStride", stride},
-          {"count", count}, {"mode", mode}, {"filter", filter}}}}}};
+  b.json["bufferViews"][at] = {{"buffer", 1},
+                               {"byteLength", count * stride},
+                               {"extensions",
+                                {{"EXT_meshopt_compression",
+                                  {{"buffer", 0},
+                                   {"byteOffset", where["byteOffset"]},
+                                   {"byteLength", where["byteLength"]},
+                                   {"byteStride", stride},
+                                   {"count", count},
+                                   {"mode", mode},
+                                   {"filter", filter}}}}}};
   if (std::string_view(mode) == "ATTRIBUTES") b.json["bufferViews"][at]["byteStride"] = stride;
   return at;
 }
@@ -212,9 +217,10 @@ TEST(GltfBuffers, UnpackMeshopt) {
   std::vector<unsigned char> packed_normals(meshopt_encodeVertexBufferBound(4, 4));
   packed_normals.resize(meshopt_encodeVertexBuffer(packed_normals.data(), packed_normals.size(), octahedral.data(), 4, 4));
   const std::size_t normal_view = meshopt_view(b, packed_normals, 4, 4, "ATTRIBUTES", "OCTAHEDRAL");
-  b.json["accessors"] = {{{"bufferView", position_view}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
-                         {{"bufferView", normal_view}, {"componentType", 5120}, {"normalized", true}, {"count", 4}, {"type", "VEC3"}},
-                         {{"bufferView", index_view}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}};
+  b.json["accessors"] = {
+      {{"bufferView", position_view}, {"componentType", 5126}, {"count", 4}, {"type", "VEC3"}},
+      {{"bufferView", normal_view}, {"componentType", 5120}, {"normalized", true}, {"count", 4}, {"type", "VEC3"}},
+      {{"bufferView", index_view}, {"componentType", 5123}, {"count", 6}, {"type", "SCALAR"}}};
   attributes(b) = {{"POSITION", 0}, {"NORMAL", 1}};
   primitive(b)["indices"] = 2;
   b.json["buffers"] = {{{"byteLength", b.bin.size()}}, {{"byteLength", 1000}}};

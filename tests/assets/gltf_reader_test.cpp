@@ -136,8 +136,7 @@ TEST(GltfReader, TakesEightInfluences) {
   const model::ImportedModel m = must_read(b);
   EXPECT_EQ(m.model->skin->per_vertex(), 8U);
   // 1 of the shoulder and four quarters of the elbow, scaled to sum 1.
-  EXPECT_THAT(m.model->skin->influences().weights.first(8),
-              ElementsAre(0.5F, 0, 0, 0, 0.125F, 0.125F, 0.125F, 0.125F));
+  EXPECT_THAT(m.model->skin->influences().weights.first(8), ElementsAre(0.5F, 0, 0, 0, 0.125F, 0.125F, 0.125F, 0.125F));
 }
 
 TEST(GltfReader, ReadsMorphTargetsAndTheirNames) {
@@ -177,8 +176,7 @@ TEST(GltfReader, ClipsKeepTheirTracksTimesAndModes) {
   EXPECT_THAT(m.clips[0].times_s, ElementsAre(0.0, 1.0, 3.0));
   EXPECT_EQ(m.clips[0].duration_s(), 3.0);
   EXPECT_EQ(m.clips[0].keyframes[2].pose->values()[0].value, glm::vec4(0, 0, 0, 1)) << "unit length";
-  EXPECT_THAT(*m.clips[0].channel_modes,
-              ElementsAre(model::ChannelMode{{2, Property::Rotation}, Interpolation::Linear}));
+  EXPECT_THAT(*m.clips[0].channel_modes, ElementsAre(model::ChannelMode{{2, Property::Rotation}, Interpolation::Linear}));
   const model::PoseKey& cubic = *m.clips[1].keyframes[1].pose;
   EXPECT_EQ(cubic.values()[0].value, glm::vec4(13, 14, 15, 0));
   EXPECT_EQ(cubic.tangents()[0].in, glm::vec4(10, 11, 12, 0));

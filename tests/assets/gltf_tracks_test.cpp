@@ -61,7 +61,9 @@ TEST(GltfTimeline, KeepsEveryKeyOfManyLists) {
   const GltfTimeline line = merge_times(lists);
   std::size_t found = 0;
   for (std::size_t t = 0; t < line.times_s.size(); ++t) {
-    if (t > 0) ASSERT_GT(line.times_s[t], line.times_s[t - 1]);
+    if (t > 0) {
+      ASSERT_GT(line.times_s[t], line.times_s[t - 1]);
+    }
     for (const auto& key : line.keys[t]) EXPECT_NEAR(line.times_s[t], double{lists[key.list][key.key]}, 1e-6);
     found += line.keys[t].size();
   }

@@ -35,10 +35,8 @@ class GltfBuilder {
   template <class T>
   std::size_t accessor(std::string_view type, const std::vector<T>& values, bool normalized = false) {
     const std::size_t width = type == "SCALAR" ? 1 : type == "MAT4" ? 16 : static_cast<std::size_t>(type.back() - '0');
-    Json a{{"bufferView", view(values)},
-           {"componentType", component_of(T{})},
-           {"count", values.size() / width},
-           {"type", type}};
+    Json a{
+        {"bufferView", view(values)}, {"componentType", component_of(T{})}, {"count", values.size() / width}, {"type", type}};
     if (normalized) a["normalized"] = true;
     json["accessors"].push_back(a);
     return json["accessors"].size() - 1;
@@ -51,10 +49,9 @@ class GltfBuilder {
     const std::string_view type = path == "weights" ? "SCALAR" : path == "rotation" ? "VEC4" : "VEC3";
     const std::size_t input = accessor("SCALAR", times);
     const std::size_t output = accessor(type, values, normalized);
-    json["animations"].push_back(
-        {{"name", name},
-         {"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
-         {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}}});
+    json["animations"].push_back({{"name", name},
+                                  {"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
+                                  {"channels", {{{"sampler", 0}, {"target", {{"node", node}, {"path", path}}}}}}});
   }
 
   [[nodiscard]] std::string glb() const {

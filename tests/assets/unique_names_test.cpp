@@ -12,9 +12,7 @@ std::vector<std::string> unique(std::vector<std::string> names) {
   return make_unique(std::move(names), [](std::size_t i) { return "node_" + std::to_string(i); });
 }
 
-TEST(UniqueNames, KeepWhatIsUniqueVerbatim) {
-  EXPECT_THAT(unique({"a", "Ä b/c", "a_2"}), ElementsAre("a", "Ä b/c", "a_2"));
-}
+TEST(UniqueNames, KeepWhatIsUniqueVerbatim) { EXPECT_THAT(unique({"a", "Ä b/c", "a_2"}), ElementsAre("a", "Ä b/c", "a_2")); }
 
 TEST(UniqueNames, NumberRepetitions) {
   EXPECT_THAT(unique({"a", "a", "b", "a"}), ElementsAre("a", "a_2", "b", "a_3"));

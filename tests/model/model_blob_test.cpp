@@ -33,9 +33,11 @@ ImportedModel skinned() {
   const MeshPtr mesh = textured_square();
   const VertexKeyPtr rest = must(VertexKey::make(*mesh, std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0},
                                                  std::vector<float>{1, 2, 3, 0.1F, 0.2F, 0.3F, 7, 8, 9, 0, 0, 1}));
-  const SkeletonPtr skeleton = must(Skeleton::make({{"hip", -1, {}}, {"Ä", 0, {{1, 2, 3}, glm::quat(0.6F, 0.8F, 0, 0), {1, 2, 1}}}}));
-  const SkinPtr skin = must(Skin::make({{0, {}}, {1, {}}}, 4, std::vector<std::uint16_t>(16, 1),
-                                       {0.3F, 0.3F, 0.1F, 0.7F, 1, 0, 0, 0, 0, 0, 0, 0, 0.2F, 0.2F, 0.2F, 0.2F}, rest->positions()));
+  const SkeletonPtr skeleton =
+      must(Skeleton::make({{"hip", -1, {}}, {"Ä", 0, {{1, 2, 3}, glm::quat(0.6F, 0.8F, 0, 0), {1, 2, 1}}}}));
+  const SkinPtr skin =
+      must(Skin::make({{0, {}}, {1, {}}}, 4, std::vector<std::uint16_t>(16, 1),
+                      {0.3F, 0.3F, 0.1F, 0.7F, 1, 0, 0, 0, 0, 0, 0, 0, 0.2F, 0.2F, 0.2F, 0.2F}, rest->positions()));
   std::vector<MorphTarget> targets(2);
   targets[0] = {"smile", 0.25F, 1, {0, 0, 1, 0, 0, 2}, {}, {1, 0, 0, 1, 0, 0}};
   targets[1].name = "frown";
@@ -45,7 +47,11 @@ ImportedModel skinned() {
   clip.settings = {true, 5.0, animation::Interpolation::CatmullRom};
   clip.times_s = {0.5, 1.25};
   const animation::Channel turn{1, animation::Property::Rotation}, weight{1, animation::Property::Weight};
-  clip.keyframes = {{0, {}, {}, nullptr, std::make_shared<const PoseKey>(std::vector<KeyedValue>{{turn, {0, 0, 0, 1}}, {weight, {0.5F, 0, 0, 0}}})},
+  clip.keyframes = {{0,
+                     {},
+                     {},
+                     nullptr,
+                     std::make_shared<const PoseKey>(std::vector<KeyedValue>{{turn, {0, 0, 0, 1}}, {weight, {0.5F, 0, 0, 0}}})},
                     {0, animation::Interpolation::Step, animation::CubicBezier{0.1, 0.2, 0.3, 0.4}, nullptr,
                      std::make_shared<const PoseKey>(std::vector<KeyedValue>{{turn, {1, 0, 0, 0}}},
                                                      std::vector<KeyedTangents>{{glm::vec4(1), glm::vec4(2)}})}};
