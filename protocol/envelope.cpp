@@ -84,8 +84,8 @@ std::string answer_json(std::string_view id, std::string_view result) {
   return fmt::format(R"({{"jsonrpc":"2.0","id":{},"result":{}}})", id, result);
 }
 
-std::string answer_json(std::string_view id, const Error& error) {
-  std::string text = fmt::format(R"({{"jsonrpc":"2.0","id":{},"error":{{"code":{},"message":)", id, wire_code(error.code));
+std::string error_json(const Error& error) {
+  std::string text = fmt::format(R"({{"code":{},"message":)", wire_code(error.code));
   append_json_string(phrase(error.code), text);
   text += R"(,"data":{"kind":)";
   append_json_string(wire_kind(error.code), text);
@@ -96,8 +96,12 @@ std::string answer_json(std::string_view id, const Error& error) {
   if (error.revision) text += fmt::format(R"(,"revision":{})", *error.revision);
   text += R"(,"message":)";
   append_json_string(error.message.empty() ? phrase(error.code) : std::string_view(error.message), text);
-  text += "}}}";
+  text += "}}";
   return text;
+}
+
+std::string answer_json(std::string_view id, const Error& error) {
+  return fmt::format(R"({{"jsonrpc":"2.0","id":{},"error":{}}})", id, error_json(error));
 }
 
 std::string notification_json(std::string_view method, std::string_view params) {

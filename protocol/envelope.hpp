@@ -37,6 +37,8 @@ struct Message {
 /// The whole JSON of an answer; `result` is JSON text.
 [[nodiscard]] std::string answer_json(std::string_view id, std::string_view result);
 [[nodiscard]] std::string answer_json(std::string_view id, const Error& error);
+/// An error as an answer has it: code, message and data.
+[[nodiscard]] std::string error_json(const Error& error);
 /// `params` is JSON text.
 [[nodiscard]] std::string notification_json(std::string_view method, std::string_view params);
 

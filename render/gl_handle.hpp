@@ -64,6 +64,14 @@ struct TextureTraits {
   }
   static void remove(GLuint name) { glDeleteTextures(1, &name); }
 };
+struct SamplerTraits {
+  static GLuint make() {
+    GLuint name = 0;
+    glCreateSamplers(1, &name);
+    return name;
+  }
+  static void remove(GLuint name) { glDeleteSamplers(1, &name); }
+};
 struct RenderbufferTraits {
   static GLuint make() {
     GLuint name = 0;
@@ -92,6 +100,7 @@ struct ProgramTraits {
 using GlBuffer = GlHandle<BufferTraits>;
 using GlVertexArray = GlHandle<VertexArrayTraits>;
 using GlTexture = GlHandle<TextureTraits>;
+using GlSampler = GlHandle<SamplerTraits>;
 using GlRenderbuffer = GlHandle<RenderbufferTraits>;
 using GlFramebuffer = GlHandle<FramebufferTraits>;
 using GlShader = GlHandle<ShaderTraits>;

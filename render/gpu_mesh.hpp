@@ -1,25 +1,36 @@
 #pragma once
 
 #include <cstddef>
+#include <glm/vec4.hpp>
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "render/frame_memory.hpp"
 #include "render/gl_handle.hpp"
+#include "render/gpu_deform.hpp"
 #include "render/key_buffer.hpp"
 #include "render/picture.hpp"
 
 namespace tweend::render {
 
-/// A mesh on the GPU: indices, texture coordinates, the keyframes' buffer, and what binds them together.
-/// The context's thread only.
+/// The vertex colour of shaders/mesh.vert. A mesh without colours takes the context's current value of it.
+inline constexpr GLuint kColorAttribute = 13;
+
+/// A mesh on the GPU: indices, texture coordinates, colours, skin and morph targets, the keyframes' buffer, and what binds them
+/// together. The context's thread only.
 class GpuMesh {
  public:
   /// Triangles that are drawn at once.
   struct Range {
     std::size_t first_index = 0;
     GLsizei index_count = 0;
-    glm::vec3 base_color{1.0F};  ///< linear
+    glm::vec4 base_color{1.0F};  ///< linear, and alpha
     std::shared_ptr<const GlTexture> texture;
+    TextureWrap wrap_u = TextureWrap::Repeat;
+    TextureWrap wrap_v = TextureWrap::Repeat;
+    std::optional<float> alpha_cutoff;
+    bool unlit = false;
   };
   using Textures = std::vector<std::shared_ptr<const GlTexture>>;
 
@@ -27,18 +38,25 @@ class GpuMesh {
   /// @param most_key_bytes  of all keyframes together
   GpuMesh(const MeshSource& source, const Textures& textures, std::size_t most_key_bytes);
 
-  /// Binds the vertex array with the item's keyframes as its attributes; ready to draw the ranges.
-  void bind(const DrawItem& item);
+  /// Binds the vertex array with the item's vertices, be they keyframes' or the moment's, and what deforms them; ready to draw
+  /// the ranges.
+  PosePlace bind(const DrawItem& item, FrameMemory& memory);
   [[nodiscard]] const std::vector<Range>& ranges() const noexcept { return ranges_; }
-  [[nodiscard]] std::size_t bytes() const noexcept { return fixed_bytes_ + keys_.bytes(); }
+  [[nodiscard]] std::size_t bytes() const noexcept { return fixed_bytes_ + keys_.bytes() + deform_.bytes(); }
   [[nodiscard]] const KeyBuffer& keys() const noexcept { return keys_; }
 
  private:
   void upload_indices(const MeshSource& source, const Textures& textures);
+  void upload_fixed(const MeshSource& source);
+  void set_up(GLuint vertex_array, GLuint sources) const;
+  void bind_source(GLuint vertex_array, GLuint source, GLuint buffer, GLintptr offset) const;
 
-  GlVertexArray vertex_array_ = GlVertexArray::make();
+  GlVertexArray tweened_ = GlVertexArray::make();
+  GlVertexArray posed_;  ///< one keyframe and the skin; where the mesh has none of that, none
   GlBuffer indices_ = GlBuffer::make();
   GlBuffer texcoords_;
+  GlBuffer colors_;
+  GpuDeform deform_;
   KeyBuffer keys_;
   std::vector<Range> ranges_;
   std::size_t fixed_bytes_ = 0;

@@ -22,13 +22,6 @@ struct FrameBlock {
 };
 static_assert(sizeof(FrameBlock) == 64 + 5 * 16);
 
-/// Turns normals as the inverse transpose does, but for their length, and also where an actor is scaled flat and has no
-/// inverse: the cofactors, with the sign of the determinant.
-glm::mat3 normal_matrix(const glm::mat3& m) {
-  const glm::mat3 cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-  return glm::determinant(m) < 0.0F ? -cofactors : cofactors;
-}
-
 /// Cells of 1, 10, 100 … metres (or 0.1 …), a good dozen of them between the eye and what it looks at.
 float grid_cell_m(float focus_m) { return std::pow(10.0F, std::floor(std::log10(std::max(focus_m, 1e-6F) / 3.0F))); }
 
@@ -37,31 +30,35 @@ float grid_cell_m(float focus_m) { return std::pow(10.0F, std::floor(std::log10(
 Result<std::unique_ptr<Renderer>> Renderer::make(std::size_t gpu_bytes) {
   std::unique_ptr<Renderer> renderer(new Renderer(gpu_bytes));
   TWEEND_TRY(renderer->link_programs());
+  renderer->make_samplers();
   glNamedBufferStorage(renderer->frame_.name(), sizeof(FrameBlock), nullptr, GL_DYNAMIC_STORAGE_BIT);
   return renderer;
 }
 
 Status Renderer::link_programs() {
-  int sources = 1;
-  for (MeshProgram& p : mesh_programs_) {
-    const std::string prologue = tween_prologue(sources);
-    TWEEND_ASSIGN(p.program, ShaderProgram::link({prologue, shaders::kMeshVert}, {shaders::kFrame, shaders::kMeshFrag}));
-    p.world_from_model = p.program.location("world_from_model");
-    p.world_from_model_normal = p.program.location("world_from_model_normal");
-    p.weights = p.program.location("weights");
-    p.nearest = p.program.location("nearest");
-    p.base_color = p.program.location("base_color");
-    p.textured = p.program.location("textured");
-    sources *= 2;
-  }
+  TWEEND_TRY(mesh_programs_.link());
+  TWEEND_TRY(bone_drawer_.link());
   TWEEND_ASSIGN(grid_program_,
                 ShaderProgram::link({shaders::kFrame, shaders::kGridVert}, {shaders::kFrame, shaders::kGridFrag}));
   grid_center_ = grid_program_.location("center");
   return {};
 }
 
+void Renderer::make_samplers() {
+  constexpr std::array<GLint, 3> kModes{GL_REPEAT, GL_MIRRORED_REPEAT, GL_CLAMP_TO_EDGE};  // in TextureWrap's order
+  for (std::size_t i = 0; i < samplers_.size(); ++i) {
+    samplers_[i] = GlSampler::make();
+    const GLuint name = samplers_[i].name();
+    glSamplerParameteri(name, GL_TEXTURE_WRAP_S, kModes[i / kModes.size()]);
+    glSamplerParameteri(name, GL_TEXTURE_WRAP_T, kModes[i % kModes.size()]);
+    glSamplerParameteri(name, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glSamplerParameteri(name, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+  }
+}
+
 void Renderer::draw(const Picture& picture, const RenderTarget& target) {
   cache_.begin_picture();
+  memory_.begin_picture();
   glBindFramebuffer(GL_FRAMEBUFFER, target.framebuffer());
   glViewport(0, 0, static_cast<GLsizei>(picture.size.width), static_cast<GLsizei>(picture.size.height));
   glEnable(GL_FRAMEBUFFER_SRGB);
@@ -73,7 +70,15 @@ void Renderer::draw(const Picture& picture, const RenderTarget& target) {
   glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   set_frame(picture);
   for (const DrawItem& item : picture.items) draw_item(item);
+  glFrontFace(GL_CCW);
+  bone_drawer_.draw(picture.bones, memory_);
   if (picture.grid) draw_grid(picture);
+  if (!picture.bones_over.empty()) {
+    glDepthMask(GL_TRUE);
+    glClear(GL_DEPTH_BUFFER_BIT);
+    bone_drawer_.draw(picture.bones_over, memory_);
+  }
+  memory_.end_picture();
   target.resolve();
 }
 
@@ -94,21 +99,24 @@ void Renderer::set_frame(const Picture& picture) {
 }
 
 void Renderer::draw_item(const DrawItem& item) {
-  const MeshProgram& p = mesh_programs_[item.key_count <= 2 ? item.key_count - 1 : 2];
   GpuMesh& mesh = cache_.mesh(*item.mesh);
-  const glm::mat3 linear(item.world_from_model);
-  p.program.use();
-  p.program.set(p.world_from_model, item.world_from_model);
-  p.program.set(p.world_from_model_normal, normal_matrix(linear));
-  p.program.set(p.weights, glm::vec4(item.weight[0], item.weight[1], item.weight[2], item.weight[3]));
-  p.program.set(p.nearest, static_cast<int>(item.nearest));
+  const PosePlace pose = mesh.bind(item, memory_);
   // A mirrored actor's triangles run the other way round.
-  glFrontFace(glm::determinant(linear) < 0.0F ? GL_CW : GL_CCW);
-  mesh.bind(item);
+  glFrontFace(glm::determinant(glm::mat3(item.world_from_model)) < 0.0F ? GL_CW : GL_CCW);
+  // Vertices without colours of their own take this one.
+  glVertexAttrib4f(kColorAttribute, 1.0F, 1.0F, 1.0F, 1.0F);
+  MeshVariant variant = variant_of(item);
+  const MeshProgram* begun = nullptr;
   for (const GpuMesh::Range& range : mesh.ranges()) {
-    p.program.set(p.base_color, range.base_color);
-    p.program.set(p.textured, range.texture ? 1 : 0);
-    if (range.texture) glBindTextureUnit(0, range.texture->name());
+    variant.cutout = range.alpha_cutoff.has_value();
+    const MeshProgram& program = mesh_programs_.of(variant);
+    if (&program != begun) program.begin(item, pose);
+    begun = &program;
+    program.set_material(range);
+    if (range.texture) {
+      glBindTextureUnit(0, range.texture->name());
+      glBindSampler(0, samplers_[3 * static_cast<std::size_t>(range.wrap_u) + static_cast<std::size_t>(range.wrap_v)].name());
+    }
     glDrawElements(GL_TRIANGLES, range.index_count, GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(range.first_index * sizeof(std::uint32_t)));
   }

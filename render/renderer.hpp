@@ -5,8 +5,11 @@
 #include <memory>
 #include <string>
 
+#include "render/bone_drawer.hpp"
+#include "render/frame_memory.hpp"
 #include "render/gl_handle.hpp"
 #include "render/gpu_cache.hpp"
+#include "render/mesh_programs.hpp"
 #include "render/picture.hpp"
 #include "render/render_target.hpp"
 #include "render/shader_program.hpp"
@@ -14,7 +17,8 @@
 
 namespace tweend::render {
 
-/// Draws pictures with OpenGL 4.5 core: keyframes are tweened by the vertex shader, light is Blinn-Phong in linear light.
+/// Draws pictures with OpenGL 4.5 core: keyframes are tweened, or one is morphed and skinned, by the vertex shader; light is
+/// Blinn-Phong in linear light.
 /// The context's thread only.
 class Renderer {
  public:
@@ -26,27 +30,21 @@ class Renderer {
   void draw(const Picture& picture, const RenderTarget& target);
 
   [[nodiscard]] GpuCache& cache() noexcept { return cache_; }
+  [[nodiscard]] const FrameMemory& memory() const noexcept { return memory_; }
 
  private:
-  /// The mesh program for so many bound keyframes, and where its uniforms are.
-  struct MeshProgram {
-    ShaderProgram program;
-    GLint world_from_model = -1;
-    GLint world_from_model_normal = -1;
-    GLint weights = -1;
-    GLint nearest = -1;
-    GLint base_color = -1;
-    GLint textured = -1;
-  };
-
   explicit Renderer(std::size_t gpu_bytes) : cache_(gpu_bytes) {}
   [[nodiscard]] Status link_programs();
+  void make_samplers();
   void set_frame(const Picture& picture);
   void draw_item(const DrawItem& item);
   void draw_grid(const Picture& picture) const;
 
   GpuCache cache_;
-  std::array<MeshProgram, 3> mesh_programs_;  ///< for 1, 2 and up to 4 keyframes
+  FrameMemory memory_;
+  MeshPrograms mesh_programs_;
+  BoneDrawer bone_drawer_;
+  std::array<GlSampler, 9> samplers_;  ///< three ways to wrap u, for each of which three to wrap v
   ShaderProgram grid_program_;
   GLint grid_center_ = -1;
   GlBuffer frame_ = GlBuffer::make();

@@ -1,10 +1,7 @@
 #include "render/shader_program.hpp"
 
-#include <fmt/format.h>
-
+#include <string>
 #include <utility>
-
-#include "render/shader_sources.hpp"
 
 namespace tweend::render {
 namespace {
@@ -37,11 +34,6 @@ Result<GlShader> compile(GLenum stage, const ShaderParts& parts) {
 }
 
 }  // namespace
-
-std::string tween_prologue(int sources) {
-  // The bound below which a direction means nothing is animation's, blend_kernels.hpp; tests hold the two together.
-  return fmt::format("#define SOURCES {}\n#define SHORTEST_DIRECTION 1e-6\n{}{}", sources, shaders::kFrame, shaders::kTween);
-}
 
 Result<ShaderProgram> ShaderProgram::link(const ShaderParts& vertex, const ShaderParts& fragment,
                                           std::span<const char* const> captured) {

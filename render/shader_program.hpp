@@ -18,9 +18,6 @@ namespace tweend::render {
 /// A stage's source: a `#version` line is put before, the parts follow each other.
 using ShaderParts = std::vector<std::string_view>;
 
-/// The mesh's vertex stage for so many bound keyframes (1, 2 or 4), up to but without its main().
-[[nodiscard]] std::string tween_prologue(int sources);
-
 /// A linked program. The context's thread only.
 class ShaderProgram {
  public:
@@ -34,6 +31,8 @@ class ShaderProgram {
   [[nodiscard]] GLint location(const char* name) const { return glGetUniformLocation(program_.name(), name); }
 
   void set(GLint where, int value) const { glProgramUniform1i(program_.name(), where, value); }
+  void set(GLint where, float value) const { glProgramUniform1f(program_.name(), where, value); }
+  void set(GLint where, const glm::ivec3& v) const { glProgramUniform3iv(program_.name(), where, 1, &v.x); }
   void set(GLint where, const glm::vec2& v) const { glProgramUniform2fv(program_.name(), where, 1, &v.x); }
   void set(GLint where, const glm::vec3& v) const { glProgramUniform3fv(program_.name(), where, 1, &v.x); }
   void set(GLint where, const glm::vec4& v) const { glProgramUniform4fv(program_.name(), where, 1, &v.x); }

@@ -34,7 +34,7 @@ GLuint link() {
   const GLuint program = glCreateProgram();
   glAttachShader(program, compile(GL_VERTEX_SHADER, text("#define SOURCES 2\n#define SHORTEST_DIRECTION 1e-6\n",
                                                          shaders::kFrame, shaders::kTween, shaders::kMeshVert)));
-  glAttachShader(program, compile(GL_FRAGMENT_SHADER, text(shaders::kFrame, shaders::kMeshFrag)));
+  glAttachShader(program, compile(GL_FRAGMENT_SHADER, text(shaders::kFrame, shaders::kLight, shaders::kMeshFrag)));
   glLinkProgram(program);
   GLint done = GL_FALSE;
   glGetProgramiv(program, GL_LINK_STATUS, &done);
@@ -145,7 +145,9 @@ struct BareLoop::Impl {
     const glm::mat3 upright(1.0F);
     glUniformMatrix4fv(glGetUniformLocation(program, "world_from_model"), 1, GL_FALSE, &identity[0].x);
     glUniformMatrix3fv(glGetUniformLocation(program, "world_from_model_normal"), 1, GL_FALSE, &upright[0].x);
-    glUniform3fv(glGetUniformLocation(program, "base_color"), 1, &scene.base_color.x);
+    const glm::vec4 base_color(scene.base_color, 1.0F);
+    glUniform4fv(glGetUniformLocation(program, "base_color"), 1, &base_color.x);
+    glVertexAttrib4f(13, 1.0F, 1.0F, 1.0F, 1.0F);  // shaders/mesh.vert: vertices have no colours of their own
     weights = glGetUniformLocation(program, "weights");
   }
 

@@ -104,31 +104,25 @@ animation::Pose CharacterClip::rest_pose() const {
 void CharacterClip::write_json(const std::string& path) const {
   std::ofstream out(path);
   out.precision(9);
-  const auto list = [&](const char* name, const auto& items, auto write_item) {
-    out << '"' << name << "\":[";
+  const auto list = [&](const auto& items, auto write_item) {
     for (std::size_t i = 0; i < items.size(); ++i) {
-      if (i != 0) out << ',';
+      out << (i == 0 ? "[" : ",");
       write_item(items[i]);
     }
-    out << ']';
+    out << (items.empty() ? "[]" : "]");
   };
   const auto number = [&](auto value) { out << value; };
   const auto vec3 = [&](const glm::vec3& v) { out << v.x << ',' << v.y << ',' << v.z; };
   const auto quat = [&](const glm::quat& q) { out << q.x << ',' << q.y << ',' << q.z << ',' << q.w; };
-  const auto tracks = [&](const char* name, const auto& all, auto write_item) {
-    list(name, all, [&](const auto& keys) {
-      out << "{";
-      list("values", keys, write_item);
-      out << "}";
-    });
-  };
-  out << "{\"duration\":" << duration_s << ',';
-  list("parents", parents, number), out << ',';
-  list("rest", rest_translations, vec3), out << ',';
-  list("times", times_s, number), out << ',';
-  tracks("translations", translations, vec3), out << ',';
-  tracks("rotations", rotations, quat), out << ',';
-  tracks("scales", scales, vec3), out << "}\n";
+  const auto vec3_track = [&](const std::vector<glm::vec3>& keys) { list(keys, vec3); };
+  const auto quat_track = [&](const std::vector<glm::quat>& keys) { list(keys, quat); };
+  out << "{\"duration\":" << duration_s << ",\"parents\":", list(parents, number);
+  out << ",\"rest\":", list(rest_translations, vec3);
+  out << ",\"times\":", list(times_s, number);
+  out << ",\"translations\":", list(translations, vec3_track);
+  out << ",\"rotations\":", list(rotations, quat_track);
+  out << ",\"scales\":", list(scales, vec3_track);
+  out << "}\n";
   if (!out.flush()) give_up("could not write " + path);
 }
 

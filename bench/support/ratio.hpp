@@ -71,16 +71,18 @@ template <class... Contenders>
 struct Claim {
   std::string name;
   double value;
-  double target;  ///< value <= target
+  double target;         ///< value <= target
+  bool at_least{false};  ///< value >= target instead
 };
 
-/// Prints `ratio NAME VALUE <= TARGET` for each, and tells whether all hold.
+/// Prints `ratio NAME VALUE <= TARGET` (or >=) for each, and tells whether all hold.
 [[nodiscard]] inline bool report(const std::vector<Claim>& claims) {
   bool all_hold = true;
   for (const Claim& claim : claims) {
-    std::printf("ratio %s %.2f <= %g\n", claim.name.c_str(), claim.value, claim.target);
-    if (!(claim.value <= claim.target)) {
-      std::fprintf(stderr, "%s misses its target: %.2f > %g\n", claim.name.c_str(), claim.value, claim.target);
+    const char* bound = claim.at_least ? ">=" : "<=";
+    std::printf("ratio %s %.2f %s %g\n", claim.name.c_str(), claim.value, bound, claim.target);
+    if (!(claim.at_least ? claim.value >= claim.target : claim.value <= claim.target)) {
+      std::fprintf(stderr, "%s misses its target: %.2f is not %s %g\n", claim.name.c_str(), claim.value, bound, claim.target);
       all_hold = false;
     }
   }

@@ -9,41 +9,16 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "server/animation/quaternion_lanes.hpp"
+#include "server/animation/affine_lanes.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace tweend::animation::HWY_NAMESPACE {
 namespace {
 
-constexpr std::size_t kLanesHere = hn::MaxLanes(PoseTag());
-
-/// The local matrices of kPoseLanes joints, row by row. Rows of a vector of joints are stored as a transposition within blocks
-/// of four lanes leaves them, which is half the work of a whole one: see place().
+/// The local matrices of kPoseLanes joints, row by row, in the order of place().
 struct LocalRows {
   HWY_ALIGN float row[3][kPoseLanes][4];
 };
-
-/// Where a joint's rows stand.
-constexpr std::size_t place(std::size_t lane) {
-  if constexpr (kLanesHere < 4) return lane;
-  const std::size_t in_vector = lane % kLanesHere;
-  return lane - in_vector + in_vector % 4 * (kLanesHere / 4) + in_vector / 4;
-}
-
-/// Stores x, y, z, w beside each other for each lane, in the order of place().
-HWY_INLINE void store_row(PoseV x, PoseV y, PoseV z, PoseV w, float* to) {
-  const PoseTag d;
-#if HWY_TARGET == HWY_SCALAR
-  hn::StoreInterleaved4(x, y, z, w, d, to);
-#else
-  const auto xz_low = hn::InterleaveLower(d, x, z), xz_high = hn::InterleaveUpper(d, x, z);
-  const auto yw_low = hn::InterleaveLower(d, y, w), yw_high = hn::InterleaveUpper(d, y, w);
-  hn::StoreU(hn::InterleaveLower(d, xz_low, yw_low), d, to);
-  hn::StoreU(hn::InterleaveUpper(d, xz_low, yw_low), d, to + kLanesHere);
-  hn::StoreU(hn::InterleaveLower(d, xz_high, yw_high), d, to + 2 * kLanesHere);
-  hn::StoreU(hn::InterleaveUpper(d, xz_high, yw_high), d, to + 3 * kLanesHere);
-#endif
-}
 
 HWY_INLINE PoseV at(const Pose& pose, PoseRow row, std::size_t joint) {
   return hn::LoadU(PoseTag(), pose.row(row).data() + joint);
@@ -58,12 +33,12 @@ HWY_INLINE void local_matrices(const Pose& pose, std::size_t joint, std::size_t 
   const PoseV x2 = hn::Add(x, x), y2 = hn::Add(y, y), z2 = hn::Add(z, z);
   const PoseV xx = hn::Mul(x, x2), yy = hn::Mul(y, y2), zz = hn::Mul(z, z2);
   const PoseV wx = hn::Mul(w, x2), wy = hn::Mul(w, y2), wz = hn::Mul(w, z2);
-  store_row(hn::Mul(hn::Sub(hn::Sub(one, yy), zz), sx), hn::Mul(hn::MulSub(x, y2, wz), sy), hn::Mul(hn::MulAdd(x, z2, wy), sz),
-            at(pose, PoseRow::Tx, joint), out.row[0][lane]);
-  store_row(hn::Mul(hn::MulAdd(x, y2, wz), sx), hn::Mul(hn::Sub(hn::Sub(one, xx), zz), sy), hn::Mul(hn::MulSub(y, z2, wx), sz),
-            at(pose, PoseRow::Ty, joint), out.row[1][lane]);
-  store_row(hn::Mul(hn::MulSub(x, z2, wy), sx), hn::Mul(hn::MulAdd(y, z2, wx), sy), hn::Mul(hn::Sub(hn::Sub(one, xx), yy), sz),
-            at(pose, PoseRow::Tz, joint), out.row[2][lane]);
+  store_rows(hn::Mul(hn::Sub(hn::Sub(one, yy), zz), sx), hn::Mul(hn::MulSub(x, y2, wz), sy), hn::Mul(hn::MulAdd(x, z2, wy), sz),
+             at(pose, PoseRow::Tx, joint), out.row[0][lane]);
+  store_rows(hn::Mul(hn::MulAdd(x, y2, wz), sx), hn::Mul(hn::Sub(hn::Sub(one, xx), zz), sy), hn::Mul(hn::MulSub(y, z2, wx), sz),
+             at(pose, PoseRow::Ty, joint), out.row[1][lane]);
+  store_rows(hn::Mul(hn::MulSub(x, z2, wy), sx), hn::Mul(hn::MulAdd(y, z2, wx), sy), hn::Mul(hn::Sub(hn::Sub(one, xx), yy), sz),
+             at(pose, PoseRow::Tz, joint), out.row[2][lane]);
 }
 
 #if HWY_TARGET == HWY_SCALAR

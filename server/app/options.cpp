@@ -58,6 +58,9 @@ void add_limit_options(CLI::App& serve, ServeOptions& o) {
   add("--max-vertices", l.vertices_per_actor, "Vertices an actor");
   add("--max-clips", l.clips_per_actor, "Clips an actor");
   add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
+  add("--max-markers", l.markers_per_clip, "Markers a clip");
+  add("--max-queued-clips", l.queued_clips, "Clips of a queue");
+  add("--max-scheduled", l.scheduled_commands, "Commands that wait for their reading of the clock");
   add("--max-undo", l.undo_steps, "Steps that can be undone");
   add("--max-stream-pixels", l.stream_pixels, "Pixels of a connection's streams of frames together");
   add("--max-frame-side", l.frame_side, "Pixels of a picture's width, and of its height");

@@ -18,7 +18,10 @@ struct Limits {
   std::size_t joints_per_actor = 4'096;
   std::size_t keyframes_per_clip = 100'000;
   std::size_t clips_per_actor = 1'024;
+  std::size_t markers_per_clip = 10'000;
   std::size_t undo_steps = 1'000;
+  std::size_t queued_clips = 1'000;            ///< entries of one playback.queue
+  std::size_t scheduled_commands = 10'000;     ///< that wait for their reading, of all scenes together
   std::size_t stream_pixels = 64U << 20U;      ///< of a connection's streams of frames together
   std::size_t frame_side = 4'096;              ///< pixels of a picture's width, and of its height
   std::size_t asset_bytes = 256U << 20U;       ///< one asset's files together

@@ -82,7 +82,7 @@ struct ActorAddResult {
   }
 };
 
-struct ActorUpdateParams : EditTarget {
+struct ActorUpdateParams : EditTarget, Timed {
   static constexpr std::string_view kName = "ActorUpdateParams";
   std::optional<std::string> actor;
   std::optional<TransformParams> transform;
@@ -93,6 +93,7 @@ struct ActorUpdateParams : EditTarget {
   static void describe(FieldList<ActorUpdateParams>& f) {
     using T = ActorUpdateParams;
     add_edit_fields(f);
+    add_timed_fields(f);
     add_actor_field(f);
     f.add<&T::transform>("transform", "Where it stands; what is left out stays.");
     f.add<&T::interpolation>("interpolation", "For all its clips; null: let them say.");

@@ -188,6 +188,13 @@ Result<RevisionResult> remove_clip(const ClipRemoveParams& p, EditContext& conte
     return fail(ErrorCode::InvalidParams,
                 fmt::format("expected another clip to remain, found \"{}\" to be the only one", clip->name), "params.clip");
   }
+  for (const model::Layer& layer : actor->layers) {
+    if (layer.clip != clip->name) continue;
+    return fail(ErrorCode::InvalidParams,
+                fmt::format("expected a clip that no layer plays, found \"{}\" in the layer \"{}\"; layer.remove it first",
+                            clip->name, layer.name),
+                "params.clip");
+  }
   context.transaction.apply(stage::SetClip{actor->name, clip->name, nullptr});
   context.transaction.about({actor->name, clip->name, {}});
   return RevisionResult{};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <any>
+#include <concepts>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -106,6 +107,8 @@ struct Command {
   void (*async_query)(const void*, const QueryContext&, AsyncDone<std::string>) = nullptr;
   Result<std::string> (*edit)(const void*, EditContext&) = nullptr;
   const EditTarget& (*target)(const void*) = nullptr;
+  /// Set for what takes at_us.
+  const Timed& (*timed)(const void*) = nullptr;
   void (*scene_edit)(const void*, const Services&, stage::EditOptions, stage::EditDone) = nullptr;
   Result<std::vector<std::size_t>> (*players)(const void*, const stage::PlayersTurn&) = nullptr;
   std::string (*players_scene)(const void*) = nullptr;
@@ -153,6 +156,9 @@ Command row(std::string_view name, Role role, Shape shape, std::string_view summ
   c.summary = summary;
   c.params = &protocol::type_of<P>();
   c.make_params = []() -> Params { return std::make_shared<P>(); };
+  if constexpr (std::derived_from<P, Timed>) {
+    c.timed = [](const void* p) -> const Timed& { return *static_cast<const P*>(p); };
+  }
   return c;
 }
 

@@ -17,6 +17,10 @@ const std::vector<Command>& command_table() {
     add_clip_commands(t);
     add_edit_commands(t);
     add_playback_commands(t);
+    add_queue_commands(t);
+    add_schedule_commands(t);
+    add_marker_commands(t);
+    add_layer_commands(t);
     add_view_commands(t);
     add_vertices_commands(t);
     add_pose_commands(t);

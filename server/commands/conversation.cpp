@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "server/commands/command_table.hpp"
+#include "server/commands/timed_act.hpp"
 
 namespace tweend::commands {
 namespace {
@@ -98,6 +99,7 @@ void Conversation::close() {
   closed_ = true;
   progress_ = {};
   services_.events.forget(peer_.get());
+  if (const auto heard = services_.events.audience_change()) services_.stage.set_audience(*heard);
   for (const auto& [stream, open] : streams_) {
     add(services_.metrics.streams, -1);
     services_.stage.post(
@@ -197,6 +199,7 @@ void Conversation::start(const ItemKey& key) {
         key, Result<std::string>(fail(ErrorCode::Forbidden, fmt::format("expected the role {}, found {}",
                                                                         role_name(item.command->role), role_name(role_)))));
   }
+  if (item.command->timed != nullptr && item.command->timed(item.params.get()).at_us) return start_timed(key, item);
   switch (item.command->shape) {
     case Shape::Ping:
     case Shape::Query:
@@ -299,6 +302,16 @@ void Conversation::start_players(const ItemKey& key, Item& item) {
     self->finish_later(key, command->players_answer(*answer));
   };
   services_.stage.change_players(item.command->players_scene(item.params.get()), change, done);
+}
+
+void Conversation::start_timed(const ItemKey& key, Item& item) {
+  const auto act = timed_act(*item.command, item.params, services_);
+  if (!act) return finish(key, Result<std::string>(act.error()));
+  const Timed& timed = item.command->timed(item.params.get());
+  const auto answer = [](stage::ScheduledId id, ClockUs at_us) { return protocol::encode(ScheduledResult{id, at_us}); };
+  services_.stage.schedule(
+      timed_scene(*item.command, item.params), std::string(item.command->name), {*timed.at_us, timed.late == Late::Error}, *act,
+      answer, [self = shared_from_this(), key](Result<std::string> result) { self->finish_later(key, std::move(result)); });
 }
 
 void Conversation::start_connection(const ItemKey& key, Item& item) {

@@ -95,6 +95,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void start_async_query(const ItemKey& key, Item& item);
   void start_edit(const ItemKey& key, Item& item);
   void start_players(const ItemKey& key, Item& item);
+  void start_timed(const ItemKey& key, Item& item);
   void start_connection(const ItemKey& key, Item& item);
   void plan_on_strand(const ItemKey& key, const Command& command, Params params, std::shared_ptr<EditScratch> scratch,
                       ClockUs now_us);

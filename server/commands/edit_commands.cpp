@@ -35,7 +35,8 @@ struct EditItem {
   std::string method;
   std::optional<protocol::JsonValue> params;
   static void describe(FieldList<EditItem>& f) {
-    f.add<&EditItem::method>("method", "An edit: actor.*, keyframe.*, clip.*, scene.update, camera.set, light.set.");
+    f.add<&EditItem::method>("method",
+                             "An edit: actor.*, keyframe.*, clip.*, marker.*, layer.*, scene.update, camera.set, light.set.");
     f.add<&EditItem::params>("params", "Its parameters; scene, if given, is that of the whole.");
   }
 };
@@ -87,7 +88,8 @@ Result<Step> decode_step(const EditItem& item, const std::string& path, const st
   const Command* command = find_command(item.method);
   if (command == nullptr || command->edit == nullptr || item.method == "edit.apply") {
     return fail(ErrorCode::InvalidParams,
-                fmt::format("expected an edit (actor.*, keyframe.*, clip.*, scene.update, camera.set, light.set), found \"{}\"",
+                fmt::format("expected an edit (actor.*, keyframe.*, clip.*, marker.*, layer.*, scene.update, camera.set, "
+                            "light.set), found \"{}\"",
                             item.method),
                 path + ".method");
   }
@@ -105,6 +107,10 @@ Result<Step> decode_step(const EditItem& item, const std::string& path, const st
   if (target.retry_key) {
     return fail(ErrorCode::InvalidParams, "expected retry_key beside edits, found it in one of them",
                 path + ".params.retry_key");
+  }
+  if (command->timed != nullptr && command->timed(params.get()).at_us) {
+    return fail(ErrorCode::InvalidParams, "expected an edit for now, found at_us: parts of a whole are carried out together",
+                path + ".params.at_us");
   }
   return Step{command, std::move(params)};
 }

@@ -51,6 +51,40 @@ struct SceneChanged {
   }
 };
 
+struct MarkerCrossed {
+  static constexpr std::string_view kName = "MarkerCrossed";
+  std::string scene, actor, clip;
+  std::int64_t marker = 0;
+  std::string name;
+  double time = 0.0;
+  std::int64_t at_us = 0;
+  static void describe(FieldList<MarkerCrossed>& f) {
+    using T = MarkerCrossed;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::actor>("actor", "Whose player has passed it.");
+    f.add<&T::clip>("clip", "The clip it is in.");
+    f.add<&T::marker>("marker", "Its id.");
+    f.add<&T::name>("name", "Its name.");
+    f.add<&T::time>("time", "Where it is in the clip, media seconds.");
+    f.add<&T::at_us>("at_us", "The first reading at which it was reached.");
+  }
+};
+
+struct ScheduleFailed {
+  static constexpr std::string_view kName = "ScheduleFailed";
+  std::string scene;
+  std::int64_t scheduled = 0;
+  std::string method;
+  protocol::JsonText error;
+  static void describe(FieldList<ScheduleFailed>& f) {
+    using T = ScheduleFailed;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::scheduled>("scheduled", "The id that its answer told.");
+    f.add<&T::method>("method", "The command.");
+    f.add<&T::error>("error", "Why nothing has changed, as an answer would have it.");
+  }
+};
+
 template <class T>
 std::string notification(std::string_view method, const T& params) {
   return protocol::notification_json(method, protocol::encode(params));
@@ -80,15 +114,28 @@ void EventHub::forget(const Peer* peer) {
   std::erase_if(subscribers_, [](const auto& entry) { return entry.second.empty(); });
 }
 
+std::optional<bool> EventHub::audience_change() {
+  const bool has = !subscribers_.empty();
+  if (has == had_audience_) return std::nullopt;
+  had_audience_ = has;
+  return has;
+}
+
 void EventHub::tell(std::string scene, std::string json, Order order) {
-  to_network_([this, scene = std::move(scene), shared = std::make_shared<const std::string>(std::move(json)), order] {
+  tell_all(std::move(scene), {std::make_shared<const std::string>(std::move(json))}, order);
+}
+
+void EventHub::tell_all(std::string scene, Texts texts, Order order) {
+  to_network_([this, scene = std::move(scene), texts = std::move(texts), order] {
     const auto at = subscribers_.find(scene);
     if (at == subscribers_.end()) return;
     for (const std::weak_ptr<Peer>& weak : at->second) {
       const auto peer = weak.lock();
       if (!peer) continue;
-      add(metrics_.events_total);
-      order == Order::AfterPackets ? peer->send_after_packets(shared) : peer->send_shared(shared);
+      add(metrics_.events_total, static_cast<std::int64_t>(texts.size()));
+      for (const auto& text : texts) {
+        order == Order::AfterPackets ? peer->send_after_packets(text) : peer->send_shared(text);
+      }
     }
   });
 }
@@ -115,6 +162,22 @@ void EventHub::player_ended(const stage::SceneViewPtr& view, std::size_t player)
   hub_.after_delivery(view, [this, scene = view->scene->name, json = std::move(json)]() mutable {
     tell(std::move(scene), std::move(json), Order::AfterPackets);
   });
+}
+
+void EventHub::markers_crossed(const std::string& scene, const std::vector<stage::MarkerCrossed>& crossed) {
+  Texts texts;
+  texts.reserve(crossed.size());
+  for (const stage::MarkerCrossed& c : crossed) {
+    texts.push_back(std::make_shared<const std::string>(notification(
+        "marker.crossed", MarkerCrossed{scene, c.actor, c.clip, c.marker.id, c.marker.name, c.marker.time_s, c.at_us})));
+  }
+  tell_all(scene, std::move(texts), Order::AtOnce);
+}
+
+void EventHub::schedule_failed(const stage::Scheduled& what, const Error& error) {
+  protocol::JsonText text{std::make_shared<const std::string>(protocol::error_json(error))};
+  tell(what.scene, notification("schedule.failed", ScheduleFailed{what.scene, what.id, what.method, std::move(text)}),
+       Order::AtOnce);
 }
 
 }  // namespace tweend::commands

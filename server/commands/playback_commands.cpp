@@ -1,68 +1,59 @@
 #include <fmt/format.h>
 
-#include <numeric>
-
 #include "server/commands/command_table.hpp"
+#include "server/commands/playback_targets.hpp"
 
 namespace tweend::commands {
 namespace {
 
 using stage::PlayersTurn;
-using Concerned = std::vector<std::size_t>;
 
-struct PlayersParams {
+struct PlayersParams : PlayerTarget {
   static constexpr std::string_view kName = "PlayersParams";
-  std::optional<std::string> scene;
-  std::optional<std::string> actor;
-  static void describe(FieldList<PlayersParams>& f);
+  static void describe(FieldList<PlayersParams>& f) { add_timed_player_fields(f); }
 };
 
-template <class T>
-void add_player_fields(FieldList<T>& f) {
-  add_scene_field(f);
-  f.template add<&T::actor>("actor", "Name of the actor; every actor of the scene, in lockstep, if left out.");
-}
-
-void PlayersParams::describe(FieldList<PlayersParams>& f) { add_player_fields(f); }
-
-struct PlayParams {
-  static constexpr std::string_view kName = "PlayParams";
+struct GetParams {
+  static constexpr std::string_view kName = "PlayersGetParams";
   std::optional<std::string> scene;
   std::optional<std::string> actor;
+  static void describe(FieldList<GetParams>& f) { add_player_fields(f); }
+};
+
+struct PlayParams : PlayerTarget {
+  static constexpr std::string_view kName = "PlayParams";
   std::optional<std::string> clip;
   std::optional<double> time;
   std::optional<double> speed;
   std::optional<stage::Loop> loop;
+  std::optional<double> fade;
   static void describe(FieldList<PlayParams>& f) {
     using T = PlayParams;
-    add_player_fields(f);
+    add_timed_player_fields(f);
     f.add<&T::clip>("clip", "The clip to play; another one than before starts at its range's start (backwards: its end).");
     f.add<&T::time>("time", "Where to start, media seconds.");
     f.add<&T::speed>("speed", "Media seconds a clock second; negative: backwards.");
     f.add<&T::loop>("loop", "What happens at the range's end.");
+    f.add<&T::fade>("fade", "Clock seconds in which the new clip replaces what is shown, linearly.", protocol::kNotNegative);
   }
 };
 
-struct SeekParams {
+struct SeekParams : PlayerTarget {
   static constexpr std::string_view kName = "SeekParams";
-  std::optional<std::string> scene;
-  std::optional<std::string> actor;
   double time = 0.0;
   static void describe(FieldList<SeekParams>& f) {
-    add_player_fields(f);
+    add_timed_player_fields(f);
     f.add<&SeekParams::time>("time", "Media seconds; outside the range it is clamped (once) or wrapped.");
   }
 };
 
-struct StepParams {
+struct StepParams : PlayerTarget {
   static constexpr std::string_view kName = "StepParams";
-  std::optional<std::string> scene;
-  std::optional<std::string> actor;
   std::optional<double> seconds;
   std::optional<std::int64_t> keyframes;
   static void describe(FieldList<StepParams>& f) {
     using T = StepParams;
-    add_player_fields(f);
+    add_timed_player_fields(f);
     f.add<&T::seconds>("seconds", "By so many media seconds; negative: back.");
     f.add<&T::keyframes>("keyframes", "To the n-th next keyframe; negative: previous.");
   }
@@ -76,59 +67,29 @@ struct StepParams {
   }
 };
 
-struct SetParams {
+struct SetParams : PlayerTarget {
   static constexpr std::string_view kName = "PlayerSetParams";
-  std::optional<std::string> scene;
-  std::optional<std::string> actor;
   std::optional<double> speed;
   std::optional<stage::Loop> loop;
   Nullable<std::array<double, 2>> range;
   static void describe(FieldList<SetParams>& f) {
     using T = SetParams;
-    add_player_fields(f);
+    add_timed_player_fields(f);
     f.add<&T::speed>("speed", "Media seconds a clock second; negative: backwards.");
     f.add<&T::loop>("loop", "What happens at the range's end.");
     f.add<&T::range>("range", "[in, out], media seconds; null: the whole clip, however it grows.", protocol::kNotNegative);
   }
 };
 
-/// One player with the clip it is on and the range in force.
-struct Target {
-  std::size_t index;
-  stage::Player& player;
-  const model::Actor& actor;
-  model::ClipPtr clip;
-  [[nodiscard]] stage::PlayRange range() const noexcept { return player.range_of(*clip); }
-};
-
-Result<Concerned> concerned_players(const model::Scene& scene, const std::optional<std::string>& actor) {
-  Concerned indices;
-  for (std::size_t i = 0; i < scene.actors.size(); ++i) {
-    if (!actor || scene.actors[i]->name == *actor) indices.push_back(i);
-  }
-  if (actor && indices.empty()) return no_such_actor(scene, *actor);
-  return indices;
-}
-
-/// Does `act` to every player concerned, all at the same reading. An error leaves all of them as they were.
-template <class Act>
-Result<Concerned> for_players(const std::optional<std::string>& actor, const PlayersTurn& turn, Act&& act) {
-  TWEEND_ASSIGN(Concerned indices, concerned_players(turn.scene, actor));
-  for (const std::size_t i : indices) {
-    const model::Actor& a = *turn.scene.actors[i];
-    Target target{i, turn.players[i], a, stage::clip_of(a, turn.players[i])};
-    TWEEND_TRY(act(target));
-  }
-  return indices;
-}
-
 Result<Concerned> play(const PlayParams& p, const PlayersTurn& turn) {
-  return for_players(p.actor, turn, [&](Target& t) -> Status {
+  return for_players(p.actor, turn, [&](PlayerOnClip& t) -> Status {
+    const stage::Player before = t.player;
     if (p.loop) t.player.set_loop(t.range(), *p.loop, turn.now_us);
     if (p.speed) t.player.set_speed(t.range(), *p.speed, turn.now_us);
     if (p.clip) {
       const model::ClipPtr next = t.actor.find_clip(*p.clip);
       if (!next) return no_such_clip(t.actor, *p.clip);
+      t.player.leave_queue(t.range(), turn.now_us);
       if (next != t.clip) {
         t.player.rebase(t.range(), turn.now_us);  // spin goes on through a change of clip
         t.player.change_clip(*next, turn.now_us);
@@ -137,33 +98,36 @@ Result<Concerned> play(const PlayParams& p, const PlayersTurn& turn) {
     }
     if (p.time) t.player.seek(t.range(), *p.time, turn.now_us);
     t.player.play(t.range(), turn.now_us);
+    const bool elsewhere = t.player.jumps != before.jumps;
+    if (elsewhere && before.playing) ++t.player.starts;
+    if (elsewhere && p.fade.value_or(0.0) > 0.0) t.player.fade_from(before, *p.fade, turn.now_us);
     return {};
   });
 }
 
 Result<Concerned> pause(const PlayersParams& p, const PlayersTurn& turn) {
-  return for_players(p.actor, turn, [&](Target& t) -> Status {
+  return for_players(p.actor, turn, [&](PlayerOnClip& t) -> Status {
     t.player.pause(t.range(), turn.now_us);
     return {};
   });
 }
 
 Result<Concerned> stop(const PlayersParams& p, const PlayersTurn& turn) {
-  return for_players(p.actor, turn, [&](Target& t) -> Status {
+  return for_players(p.actor, turn, [&](PlayerOnClip& t) -> Status {
     t.player.stop(t.range(), turn.now_us);
     return {};
   });
 }
 
 Result<Concerned> seek(const SeekParams& p, const PlayersTurn& turn) {
-  return for_players(p.actor, turn, [&](Target& t) -> Status {
+  return for_players(p.actor, turn, [&](PlayerOnClip& t) -> Status {
     t.player.seek(t.range(), p.time, turn.now_us);
     return {};
   });
 }
 
 Result<Concerned> step(const StepParams& p, const PlayersTurn& turn) {
-  return for_players(p.actor, turn, [&](Target& t) -> Status {
+  return for_players(p.actor, turn, [&](PlayerOnClip& t) -> Status {
     t.player.pause(t.range(), turn.now_us);
     const double here_s = t.player.read(t.range(), turn.now_us).time_s;
     const std::optional<double> there_s =
@@ -175,7 +139,7 @@ Result<Concerned> step(const StepParams& p, const PlayersTurn& turn) {
 }
 
 Result<Concerned> set(const SetParams& p, const PlayersTurn& turn) {
-  return for_players(p.actor, turn, [&](Target& t) -> Status {
+  return for_players(p.actor, turn, [&](PlayerOnClip& t) -> Status {
     if (p.loop) t.player.set_loop(t.range(), *p.loop, turn.now_us);
     if (p.speed) t.player.set_speed(t.range(), *p.speed, turn.now_us);
     if (!p.range) return {};
@@ -195,7 +159,7 @@ Result<Concerned> set(const SetParams& p, const PlayersTurn& turn) {
   });
 }
 
-Result<PlayersResult> get(const PlayersParams& p, const QueryContext& context) {
+Result<PlayersResult> get(const GetParams& p, const QueryContext& context) {
   const stage::SceneViewPtr view = context.view->find(scene_or_main(p.scene));
   if (!view) return no_such_scene(scene_or_main(p.scene));
   TWEEND_ASSIGN(const Concerned indices, concerned_players(*view->scene, p.actor));

@@ -111,6 +111,23 @@ struct ClipState {
   }
 };
 
+struct LayerState {
+  static constexpr std::string_view kName = "Layer";
+  std::string layer;
+  std::string clip;
+  float weight = 1.0F;
+  bool additive = false;
+  std::optional<std::vector<std::string>> mask;
+  static void describe(FieldList<LayerState>& f) {
+    using T = LayerState;
+    f.add<&T::layer>("layer", "Its name.");
+    f.add<&T::clip>("clip", "What it plays.");
+    f.add<&T::weight>("weight", "0 to 1; while it fades, where it is going.");
+    f.add<&T::additive>("additive", "Whether it adds rather than replaces.");
+    f.add<&T::mask>("mask", "The joints it touches; left out: all.");
+  }
+};
+
 struct ActorState {
   static constexpr std::string_view kName = "Actor";
   std::string actor;
@@ -122,6 +139,7 @@ struct ActorState {
   double spin = 0.0;
   PlayerState player;
   std::vector<ClipState> clips;
+  std::vector<LayerState> layers;
   std::vector<JointState> joints;
   std::vector<std::string> weights;
   std::uint64_t vertices = 0;
@@ -137,6 +155,7 @@ struct ActorState {
     f.add<&T::spin>("spin", "Radians a second about +Y while playing.");
     f.add<&T::player>("player", "Its transport.");
     f.add<&T::clips>("clips", "In the order they were made.");
+    f.add<&T::layers>("layers", "In the order they lie over each other.");
     f.add<&T::joints>("joints", "Its skeleton; a mesh without one has none.");
     f.add<&T::weights>("weights", "Names of its morph targets.");
     f.add<&T::vertices>("vertices", "How many.");
@@ -173,6 +192,14 @@ ClipState clip_state(const model::Clip& clip) {
   return state;
 }
 
+LayerState layer_state(const model::Actor& actor, const model::Layer& layer) {
+  LayerState state{layer.name, layer.clip, layer.weight, layer.additive, {}};
+  if (!layer.joints) return state;
+  state.mask.emplace();
+  for (const std::uint32_t joint : *layer.joints) state.mask->push_back(actor.model->skeleton->joints()[joint].name);
+  return state;
+}
+
 ActorState actor_state(const stage::SceneView& view, std::size_t index, ClockUs now_us) {
   const model::Actor& actor = *view.scene->actors[index];
   const model::ActorSettings& s = actor.settings;
@@ -185,11 +212,13 @@ ActorState actor_state(const stage::SceneView& view, std::size_t index, ClockUs 
                    s.spin_rad_s,
                    player_state(view, index, now_us),
                    {},
+                   {},
                    joint_states(*actor.model),
                    weight_names(*actor.model),
                    actor.model->vertex_count(),
                    actor.model->mesh ? actor.model->mesh->triangle_count() : 0};
   for (const model::ClipPtr& clip : actor.clips) state.clips.push_back(clip_state(*clip));
+  for (const model::Layer& layer : actor.layers) state.layers.push_back(layer_state(actor, layer));
   return state;
 }
 

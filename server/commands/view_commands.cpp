@@ -4,10 +4,11 @@
 namespace tweend::commands {
 namespace {
 
-struct CameraParams : EditTarget, CameraFields {
+struct CameraParams : EditTarget, CameraFields, Timed {
   static constexpr std::string_view kName = "CameraParams";
   static void describe(FieldList<CameraParams>& f) {
     add_edit_fields(f);
+    add_timed_fields(f);
     add_camera_fields(f);
   }
 };

@@ -7,8 +7,9 @@
 namespace tweend::commands {
 
 PlayerState player_state(const stage::SceneView& view, std::size_t player, ClockUs at_us) {
-  const stage::Player& p = (*view.players)[player];
-  const model::ClipPtr clip = stage::clip_of(*view.scene->actors[player], p);
+  const model::Actor& actor = *view.scene->actors[player];
+  const stage::Player p = stage::reached(actor, (*view.players)[player], at_us);
+  const model::ClipPtr clip = stage::clip_of(actor, p);
   const stage::PlayRange range = p.range_of(*clip);
   const stage::PlayerReading reading = p.read(range, at_us);
   return {p.actor, clip->name, reading.playing, reading.time_s, p.speed, p.loop, {range.in_s, range.out_s}, clip->duration_s()};

@@ -20,6 +20,9 @@ namespace tweend::commands {
 /// What a clip holds, on the wire.
 enum class WireClipType : std::uint8_t { Vertex, Skeletal };
 
+/// What becomes of a command whose reading is past.
+enum class Late : std::uint8_t { Run, Error };
+
 }  // namespace tweend::commands
 
 namespace tweend::protocol {
@@ -27,6 +30,10 @@ namespace tweend::protocol {
 template <>
 struct EnumNames<commands::WireClipType> {
   static constexpr std::array<std::string_view, 2> kNames{"vertex", "skeletal"};
+};
+template <>
+struct EnumNames<commands::Late> {
+  static constexpr std::array<std::string_view, 2> kNames{"run", "error"};
 };
 template <>
 struct EnumNames<animation::Interpolation> {
@@ -74,6 +81,28 @@ template <class T>
 void add_clip_field(FieldList<T>& f) {
   f.template add<&T::clip>("clip", "Name of the clip; the player's clip if left out.");
 }
+
+/// Parameters of what can be scheduled. Derive, and call add_timed_fields in describe().
+struct Timed {
+  std::optional<std::int64_t> at_us;
+  std::optional<Late> late;
+};
+
+template <class T>
+void add_timed_fields(FieldList<T>& f) {
+  f.template add<&T::at_us>("at_us", "A reading of the server's steady clock (server.ping): carried out as of then.");
+  f.template add<&T::late>("late", "What becomes of it where at_us is past; run, as of now, if left out.");
+}
+
+struct ScheduledResult {
+  static constexpr std::string_view kName = "ScheduledCommand";
+  std::int64_t scheduled = 0;
+  std::int64_t at_us = 0;
+  static void describe(FieldList<ScheduledResult>& f) {
+    f.add<&ScheduledResult::scheduled>("scheduled", "Its id, for schedule.cancel.");
+    f.add<&ScheduledResult::at_us>("at_us", "The reading as of which it will be carried out.");
+  }
+};
 
 struct RevisionResult {
   static constexpr std::string_view kName = "Revision";

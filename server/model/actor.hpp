@@ -44,6 +44,8 @@ struct Layer {
   float weight = 1.0F;                                       ///< 0 to 1
   bool additive = false;                                     ///< adds what differs from the rest pose, rather than replace
   std::shared_ptr<const std::vector<std::uint32_t>> joints;  ///< whose pose it touches, ascending; null: all
+  /// The same as a factor for each joint in the order of evaluation, made once; null: all.
+  std::shared_ptr<const std::vector<float>> mask;
   bool operator==(const Layer&) const = default;
 };
 

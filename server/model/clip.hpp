@@ -45,6 +45,15 @@ struct ClipSettings {
   bool operator==(const ClipSettings&) const = default;
 };
 
+/// A named instant of a clip.
+struct Marker {
+  KeyframeId id = 0;    ///< unique in its scene, never reused
+  double time_s = 0.0;  ///< >= 0; beyond the clip's end it is never reached
+  std::string name;
+  bool operator==(const Marker&) const = default;
+};
+using MarkersPtr = std::shared_ptr<const std::vector<Marker>>;
+
 /// How an imported track blends where its keyframes say nothing.
 struct ChannelMode {
   animation::Channel channel;
@@ -63,6 +72,7 @@ struct Clip {
   std::vector<double> times_s;              ///< ascending, at least kSameTimeSeconds apart, each >= 0
   std::vector<Keyframe> keyframes;          ///< one for each time
   ChannelModesPtr channel_modes;            ///< ascending by channel; null: none
+  MarkersPtr markers;                       ///< ascending by time, then id; null: none
 
   /// What its keyframes hold; of an empty clip, what was declared.
   [[nodiscard]] ClipType type() const noexcept;

@@ -23,6 +23,9 @@ class Evaluator {
   [[nodiscard]] std::span<const animation::Affine> model_from_joint(const Actor& actor, const Shown& shown);
   /// pose() and model_from_joint(), and the matrix of each entry of the skin; empty without a skin.
   [[nodiscard]] std::span<const animation::Affine> skin_matrices(const Actor& actor, const Shown& shown);
+  /// What the last call of those above found on its way: the morph weights, and (not after pose()) the joints' matrices.
+  [[nodiscard]] std::span<const float> last_weights() const noexcept { return pose_.weights(); }
+  [[nodiscard]] std::span<const animation::Affine> last_joints() const noexcept { return model_from_joint_; }
   /// After morphing and skinning, in model space. Clips of vertices stand for the mesh as it ends up; a fade between the two
   /// kinds blends the results.
   /// @return Internal where a length of `out` is neither 0 nor 3 × the mesh's vertices

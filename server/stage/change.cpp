@@ -75,6 +75,37 @@ std::optional<TimedKeyframe> put_keyframe(Clip& clip, model::KeyframeId id, cons
   return before;
 }
 
+// Takes the marker out, if it is there, and puts the new one in its place in time.
+std::optional<model::Marker> put_marker(Clip& clip, model::KeyframeId id, const std::optional<model::Marker>& value) {
+  std::optional<model::Marker> before;
+  std::vector<model::Marker> markers = clip.markers ? *clip.markers : std::vector<model::Marker>();
+  const auto at = std::find_if(markers.begin(), markers.end(), [id](const model::Marker& m) { return m.id == id; });
+  if (at != markers.end()) {
+    before = std::move(*at);
+    markers.erase(at);
+  }
+  if (value) {
+    const auto earlier = [](const model::Marker& a, const model::Marker& b) {
+      return a.time_s != b.time_s ? a.time_s < b.time_s : a.id < b.id;
+    };
+    markers.insert(std::lower_bound(markers.begin(), markers.end(), *value, earlier), *value);
+  }
+  clip.markers = markers.empty() ? nullptr : std::make_shared<const std::vector<model::Marker>>(std::move(markers));
+  return before;
+}
+
+std::optional<model::Layer> put_layer(Actor& actor, const std::string& name, const std::optional<model::Layer>& value) {
+  std::optional<model::Layer> before;
+  const auto below = [](const model::Layer& l, const std::string& n) { return l.name < n; };
+  auto at = std::lower_bound(actor.layers.begin(), actor.layers.end(), name, below);
+  if (at != actor.layers.end() && at->name == name) {
+    before = std::move(*at);
+    at = actor.layers.erase(at);
+  }
+  if (value) actor.layers.insert(at, *value);
+  return before;
+}
+
 struct Applier {
   Scene& scene;
 
@@ -101,6 +132,16 @@ struct Applier {
   Change operator()(const SetKeyframe& c) const {
     SetKeyframe inverse{c.actor, c.clip, c.keyframe, {}};
     update_clip(scene, c.actor, c.clip, [&](Clip& clip) { inverse.value = put_keyframe(clip, c.keyframe, c.value); });
+    return inverse;
+  }
+  Change operator()(const SetMarker& c) const {
+    SetMarker inverse{c.actor, c.clip, c.marker, {}};
+    update_clip(scene, c.actor, c.clip, [&](Clip& clip) { inverse.value = put_marker(clip, c.marker, c.value); });
+    return inverse;
+  }
+  Change operator()(const SetLayer& c) const {
+    SetLayer inverse{c.actor, c.layer, {}};
+    update_actor(scene, c.actor, [&](Actor& a) { inverse.value = put_layer(a, c.layer, c.value); });
     return inverse;
   }
   Change operator()(const SetSceneSettings& c) const { return SetSceneSettings{std::exchange(scene.settings, c.value)}; }

@@ -52,11 +52,27 @@ struct SetKeyframe {
   std::optional<TimedKeyframe> value;
 };
 
+/// Adds, replaces or removes a marker.
+struct SetMarker {
+  std::string actor;
+  std::string clip;
+  model::KeyframeId marker = 0;
+  std::optional<model::Marker> value;
+};
+
+/// Adds, replaces or removes a layer.
+struct SetLayer {
+  std::string actor;
+  std::string layer;
+  std::optional<model::Layer> value;
+};
+
 struct SetSceneSettings {
   model::SceneSettings value;
 };
 
-using Change = std::variant<SetActor, SetActorSettings, SetClip, SetClipSettings, SetKeyframe, SetSceneSettings>;
+using Change =
+    std::variant<SetActor, SetActorSettings, SetClip, SetClipSettings, SetKeyframe, SetMarker, SetLayer, SetSceneSettings>;
 
 /// Applies a change and returns the one that takes it back.
 /// Precondition: the actor and clip it names are there (commands check that before). Does not touch the revision.

@@ -41,7 +41,7 @@ struct ActorShow {
   double time_s = 0.0;          ///< of that clip
   model::Shown shown;           ///< with what fades into it, and what lies over it
   double spin_angle_rad = 0.0;  ///< about the actor's +Y
-  bool moving = false;          ///< the time changes while the clock runs
+  bool moving = false;          ///< what is shown changes while the clock runs: time, or a fade
   bool turning = false;         ///< the spin does
   /// Changes exactly where what is shown may jump though time does not: seeks, clip changes, wraps of an open clip.
   std::uint64_t continuity = 0;
@@ -54,6 +54,7 @@ struct Show {
   std::vector<ActorShow> actors;
 };
 
+/// Allocates nothing, but for a player whose queue has moved on since the view was published.
 [[nodiscard]] ActorShow show_actor(const model::ActorPtr& actor, const Player& player, ClockUs at_us) noexcept;
 /// What is shown at a reading of the clock.
 [[nodiscard]] Show show_at(const SceneView& view, ClockUs at_us);
@@ -61,8 +62,5 @@ struct Show {
 void show_at(const SceneView& view, ClockUs at_us, Show& out);
 /// Each actor's current clip at `time_s`, clamped to the clip; no spin: a `time` stands outside of playing.
 void show_time(const SceneView& view, double time_s, ClockUs now_us, Show& out);
-
-/// The clip a player is on; it always has one.
-[[nodiscard]] model::ClipPtr clip_of(const model::Actor& actor, const Player& player) noexcept;
 
 }  // namespace tweend::stage

@@ -25,7 +25,7 @@ Status Stage::start(StageListener& listener) {
   }
   publish_head_map();
   for (auto& [name, document] : documents_) {
-    const auto players = players_for(*document.durable.scene, nullptr, steady_now_us());
+    const auto players = players_for(*document.durable.scene, nullptr, steady_now_us(), {});
     publish(name, std::make_shared<const SceneView>(SceneView{document.durable.scene, players, next_serial_++}));
   }
   // The writer thread reports; the strand acts on it.
@@ -44,7 +44,7 @@ void Stage::stop() {
   planned.get_future().wait();
   queue_->stop();
   boost::asio::post(io_, [this] {
-    end_timer_.cancel();
+    timer_.cancel();
     work_.reset();
     io_.stop();
   });

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <thread>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "server/base/clock.hpp"
@@ -36,6 +37,24 @@ struct EditEvent {
   EditSubject subject;
 };
 
+/// A marker that a player has passed.
+struct MarkerCrossed {
+  std::string actor;
+  std::string clip;
+  model::Marker marker;
+  ClockUs at_us = 0;
+};
+
+using ScheduledId = std::int64_t;
+
+/// A command that waits for its reading.
+struct Scheduled {
+  ScheduledId id = 0;
+  ClockUs at_us = 0;
+  std::string method;
+  std::string scene;
+};
+
 /// Told on the stage's strand, in order, after the view that shows it is published.
 class StageListener {
  public:
@@ -46,6 +65,10 @@ class StageListener {
   /// @param concerned  indices into view.players
   virtual void players_changed(const SceneViewPtr& view, const std::vector<std::size_t>& concerned, ClockUs now_us) = 0;
   virtual void player_ended(const SceneViewPtr& view, std::size_t player) = 0;
+  /// @param crossed  of one tick, in order of time
+  virtual void markers_crossed(const std::string& scene, const std::vector<MarkerCrossed>& crossed) = 0;
+  /// A command that was answered `scheduled` could not be carried out.
+  virtual void schedule_failed(const Scheduled& scheduled, const Error& error) = 0;
 };
 
 /// What every edit may carry beside its own parameters.
@@ -67,6 +90,7 @@ struct PlayersTurn {
   const model::Scene& scene;
   Players& players;
   ClockUs now_us;
+  const Limits& limits;
 };
 /// Indices of the players concerned.
 using PlayersChange = std::function<Result<std::vector<std::size_t>>(const PlayersTurn&)>;
@@ -76,6 +100,15 @@ struct PlayersAnswer {
   ClockUs now_us = 0;
 };
 using PlayersDone = std::function<void(Result<PlayersAnswer>)>;
+
+/// When a command is to be carried out.
+struct Timing {
+  ClockUs at_us = 0;
+  bool late_is_error = false;  ///< else one that comes too late is carried out as of then
+};
+/// Carries a command out as of a reading, on the strand; `done` is called once, with its answer.
+using TimedAct = std::function<void(ClockUs as_of_us, EditDone done)>;
+using ScheduledAnswer = std::function<std::string(ScheduledId, ClockUs at_us)>;
 
 enum class HistoryMove : std::uint8_t { Undo, Redo };
 
@@ -111,7 +144,22 @@ class Stage {
   void create_scene(EditOptions options, std::function<std::string(std::uint64_t)> answer, EditDone done);
   void remove_scene(EditOptions options, std::function<std::string(std::uint64_t)> answer, EditDone done);
   void change_players(std::string scene, PlayersChange change, PlayersDone done);
+  /// Keeps a command for its reading, where that is to come; carries it out at once where it is past.
+  /// @param done  the answer: `answer` at once, or the command's own
+  void schedule(std::string scene, std::string method, Timing timing, TimedAct act, ScheduledAnswer answer, EditDone done);
+  /// @return NotFound: it was carried out, cancelled, or never there
+  void cancel(ScheduledId id, std::function<void(Status)> done);
+  /// What waits in a scene, in the order it will be carried out.
+  void list_scheduled(std::string scene, std::function<void(Result<std::vector<Scheduled>>)> done);
+  /// Whether anybody wants to be told of markers. Nobody, at first: passing them costs nothing then.
+  void set_audience(bool listens);
   void post(Task task);
+
+  // On the strand:
+
+  void plan(const EditOptions& options, const EditPlan& plan, const EditDone& done);
+  /// As of a reading that is not before any other that was acted on.
+  void carry_out(const std::string& scene, const PlayersChange& change, ClockUs as_of_us, const PlayersDone& done);
 
   /// The strand, for timers of those who work on it (streams).
   [[nodiscard]] boost::asio::io_context& strand() noexcept { return io_; }
@@ -137,7 +185,12 @@ class Stage {
     std::string retry_key;
     std::string answer;
     EditDone done;
+    std::vector<LayerFadeRequest> layer_fades;
     std::uint64_t epoch = 0;
+  };
+  struct Waiting {
+    Scheduled what;
+    TimedAct act;
   };
   struct RetryBook {
     std::unordered_map<std::string, std::string> answers;
@@ -148,7 +201,7 @@ class Stage {
   [[nodiscard]] Result<Document*> find_head(const EditOptions& options);
   [[nodiscard]] bool answered_before(const EditOptions& options, const EditDone& done);
   void submit(const EditOptions& options, Document& document, State after, EditSubject subject, std::string answer,
-              EditDone done);
+              EditDone done, std::vector<LayerFadeRequest> layer_fades = {});
   void commit_later(Pending pending);
   void remember_retry(const std::string& scene, const std::string& key, const std::string& answer);
   void forget_retry(const std::string& scene, const std::string& key);
@@ -159,11 +212,22 @@ class Stage {
   void publish_head_map();
 
   // stage_players.cpp
-  [[nodiscard]] std::shared_ptr<const Players> players_for(const model::Scene& next, const SceneViewPtr& before,
-                                                           ClockUs now_us);
+  [[nodiscard]] std::shared_ptr<const Players> players_for(const model::Scene& next, const SceneViewPtr& before, ClockUs now_us,
+                                                           const std::vector<LayerFadeRequest>& layer_fades);
   void publish(const std::string& scene, SceneViewPtr view);
-  void end_players(ClockUs now_us);
-  void arm_end_timer();
+
+  // stage_time.cpp
+  void advance(ClockUs now_us);
+  void settle(ClockUs now_us);
+  void settle_scene(const std::string& scene, const SceneViewPtr& before, ClockUs now_us);
+  void tell_starts(const SceneViewPtr& before, const SceneViewPtr& after, ClockUs now_us);
+  void tell_passed(const std::string& scene, std::vector<MarkerCrossed> crossed, ClockUs now_us);
+  void arm_timer();
+  [[nodiscard]] std::optional<ClockUs> next_event_us() const;
+
+  // stage_schedule.cpp
+  void run_due(ClockUs now_us);
+  void forget_scheduled(const std::string& scene);
 
   using HeadMap = std::map<std::string, model::ScenePtr, std::less<>>;
 
@@ -181,10 +245,16 @@ class Stage {
   std::uint64_t next_ticket_ = 1;
   std::uint64_t epoch_ = 1;
   std::uint64_t next_serial_ = 1;
+  std::map<std::pair<ClockUs, ScheduledId>, Waiting> scheduled_;  ///< of one reading, the one that came first is first
+  ScheduledId next_scheduled_ = 1;
+  bool audience_ = false;
+  ClockUs settled_us_ = 0;      ///< what happens by itself has happened up to here
+  ClockUs last_passed_us_ = 0;  ///< when markers were told last
+  bool said_cut_ = false;
 
   boost::asio::io_context io_{1};
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{io_.get_executor()};
-  boost::asio::steady_timer end_timer_{io_};
+  boost::asio::steady_timer timer_{io_};
   std::unique_ptr<store::CommitQueue> queue_;
   std::thread thread_;
 };

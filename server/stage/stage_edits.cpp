@@ -71,18 +71,22 @@ bool Stage::answered_before(const EditOptions& options, const EditDone& done) {
 
 void Stage::edit(EditOptions options, EditPlan plan, EditDone done) {
   boost::asio::post(io_, [this, options = std::move(options), plan = std::move(plan), done = std::move(done)] {
-    if (answered_before(options, done)) return;
-    const auto document = find_head(options);
-    if (!document) return done(document.error());
-    const State& head = (*document)->head;
-    Transaction transaction(*head.scene);
-    Result<std::string> answer = plan(transaction);
-    if (!answer) return done(answer.error());
-    State after{std::make_shared<const model::Scene>(transaction.scene()),
-                head.undo.pushed(options.method, transaction.undo_changes(), limits_.undo_steps),
-                {}};
-    submit(options, **document, std::move(after), transaction.subject(), std::move(*answer), done);
+    this->plan(options, plan, done);
   });
+}
+
+void Stage::plan(const EditOptions& options, const EditPlan& plan, const EditDone& done) {
+  if (answered_before(options, done)) return;
+  const auto document = find_head(options);
+  if (!document) return done(document.error());
+  const State& head = (*document)->head;
+  Transaction transaction(*head.scene);
+  Result<std::string> answer = plan(transaction);
+  if (!answer) return done(answer.error());
+  State after{std::make_shared<const model::Scene>(transaction.scene()),
+              head.undo.pushed(options.method, transaction.undo_changes(), limits_.undo_steps),
+              {}};
+  submit(options, **document, std::move(after), transaction.subject(), std::move(*answer), done, transaction.layer_fades());
 }
 
 void Stage::move_history(EditOptions options, HistoryMove move,
@@ -143,12 +147,13 @@ void Stage::remove_scene(EditOptions options, std::function<std::string(std::uin
     remember_retry(options.scene, options.retry_key, text);
     (*document)->removed = true;
     publish_head_map();
-    commit_later({options.scene, {}, {options.scene, options.method, revision, {}}, options.retry_key, std::move(text), done});
+    commit_later(
+        {options.scene, {}, {options.scene, options.method, revision, {}}, options.retry_key, std::move(text), done, {}});
   });
 }
 
 void Stage::submit(const EditOptions& options, Document& document, State after, EditSubject subject, std::string answer,
-                   EditDone done) {
+                   EditDone done, std::vector<LayerFadeRequest> layer_fades) {
   document.head = after;
   publish_head_map();
   remember_retry(options.scene, options.retry_key, answer);
@@ -158,7 +163,8 @@ void Stage::submit(const EditOptions& options, Document& document, State after, 
                 {options.scene, options.method, revision, std::move(subject)},
                 options.retry_key,
                 std::move(answer),
-                std::move(done)});
+                std::move(done),
+                std::move(layer_fades)});
 }
 
 void Stage::commit_later(Pending pending) {
@@ -206,10 +212,15 @@ void Stage::group_succeeded(std::vector<Pending> entries) {
   add(metrics_.commits_total);
   add(metrics_.edits_total, static_cast<std::int64_t>(entries.size()));
   const ClockUs now_us = steady_now_us();
-  end_players(now_us);  // what ran out under the old document has ended
+  advance(now_us);  // what happens under the old document happens first
   // Of several edits of a scene in one group, only the last one's view is published: nobody can have seen the others.
   std::map<std::string, const State*> newest;
-  for (const Pending& p : entries) newest[p.scene] = &p.after;
+  std::map<std::string, std::vector<LayerFadeRequest>> layer_fades;
+  for (const Pending& p : entries) {
+    newest[p.scene] = &p.after;
+    auto& fades = layer_fades[p.scene];
+    fades.insert(fades.end(), p.layer_fades.begin(), p.layer_fades.end());
+  }
   for (const auto& [name, after] : newest) {
     Document& document = documents_[name];
     if (!after->scene) {
@@ -218,18 +229,19 @@ void Stage::group_succeeded(std::vector<Pending> entries) {
       else
         document.published = nullptr;
       publish(name, nullptr);
+      forget_scheduled(name);
       continue;
     }
     document.durable = *after;
     const SceneViewPtr before = document.published;
-    const auto players = players_for(*after->scene, before, now_us);
+    const auto players = players_for(*after->scene, before, now_us, layer_fades[name]);
     const auto view = std::make_shared<const SceneView>(SceneView{after->scene, players, next_serial_++});
     publish(name, view);
     if (const auto moved = players_off_their_clip(before, *view); !moved.empty()) {
       listener_->players_changed(view, moved, now_us);
     }
   }
-  arm_end_timer();
+  arm_timer();
   for (Pending& p : entries) {
     p.done(std::move(p.answer));
     listener_->edited(p.event);

@@ -6,11 +6,21 @@
 
 #include "server/stage/stage.hpp"
 
-// Players over the published documents, and the one timer that tells when a `once` has run out.
+// Players over the published documents: made and followed through edits, and changed by commands.
 
 namespace tweend::stage {
 
-std::shared_ptr<const Players> Stage::players_for(const model::Scene& next, const SceneViewPtr& before, ClockUs now_us) {
+namespace {
+
+const model::Layer* find_layer(const model::Actor& actor, const std::string& name) noexcept {
+  const auto at = std::find_if(actor.layers.begin(), actor.layers.end(), [&](const model::Layer& l) { return l.name == name; });
+  return at == actor.layers.end() ? nullptr : &*at;
+}
+
+}  // namespace
+
+std::shared_ptr<const Players> Stage::players_for(const model::Scene& next, const SceneViewPtr& before, ClockUs now_us,
+                                                  const std::vector<LayerFadeRequest>& layer_fades) {
   auto players = std::make_shared<Players>();
   players->reserve(next.actors.size());
   for (const model::ActorPtr& actor : next.actors) {
@@ -26,6 +36,11 @@ std::shared_ptr<const Players> Stage::players_for(const model::Scene& next, cons
     }
     Player player = *old;
     if (was != actor) {
+      player.follow_fades(*was, *actor, now_us);
+      for (const LayerFadeRequest& fade : layer_fades) {
+        if (fade.actor != actor->name) continue;
+        player.fade_layer(fade.layer, find_layer(*was, fade.layer), find_layer(*actor, fade.layer), fade.length_s, now_us);
+      }
       const model::ClipPtr clip = actor->find_clip(player.clip);
       if (clip) {
         player.follow(player.range_of(*clip_of(*was, player)), player.range_of(*clip), now_us);
@@ -59,70 +74,29 @@ void Stage::publish(const std::string& scene, SceneViewPtr view) {
 void Stage::change_players(std::string scene, PlayersChange change, PlayersDone done) {
   boost::asio::post(io_, [this, scene = std::move(scene), change = std::move(change), done = std::move(done)] {
     const ClockUs now_us = steady_now_us();
-    end_players(now_us);
-    const auto at = documents_.find(scene);
-    if (at == documents_.end() || !at->second.published) {
-      return done(fail(ErrorCode::NotFound,
-                       fmt::format("expected the name of a scene, found \"{}\"; scene.list names them", scene),
-                       "params.scene"));
-    }
-    const SceneViewPtr before = at->second.published;
-    auto players = std::make_shared<Players>(*before->players);
-    auto concerned = change(PlayersTurn{*before->scene, *players, now_us});
-    if (!concerned) return done(concerned.error());
-    const auto view = std::make_shared<const SceneView>(SceneView{before->scene, std::move(players), next_serial_++});
-    publish(scene, view);
-    done(PlayersAnswer{view, *concerned, now_us});
-    if (!concerned->empty()) listener_->players_changed(view, *concerned, now_us);
-    end_players(now_us);  // a `once` of no length is over as it starts
-    arm_end_timer();
+    advance(now_us);
+    carry_out(scene, change, now_us, done);
   });
 }
 
-void Stage::end_players(ClockUs now_us) {
-  for (auto& [name, document] : documents_) {
-    const SceneViewPtr before = document.published;
-    if (!before) continue;
-    std::vector<std::size_t> ended;
-    for (std::size_t i = 0; i < before->players->size(); ++i) {
-      const Player& player = (*before->players)[i];
-      const auto end = player.end_us(player.range_of(*clip_of(*before->scene->actors[i], player)));
-      if (end && *end <= now_us) ended.push_back(i);
-    }
-    if (ended.empty()) continue;
-    auto players = std::make_shared<Players>(*before->players);
-    for (const std::size_t i : ended) {
-      Player& player = (*players)[i];
-      player.rebase(player.range_of(*clip_of(*before->scene->actors[i], player)), now_us);
-    }
-    const auto view = std::make_shared<const SceneView>(SceneView{before->scene, std::move(players), next_serial_++});
-    publish(name, view);
-    listener_->players_changed(view, ended, now_us);
-    for (const std::size_t i : ended) listener_->player_ended(view, i);
+void Stage::carry_out(const std::string& scene, const PlayersChange& change, ClockUs as_of_us, const PlayersDone& done) {
+  const auto at = documents_.find(scene);
+  if (at == documents_.end() || !at->second.published) {
+    return done(fail(ErrorCode::NotFound,
+                     fmt::format("expected the name of a scene, found \"{}\"; scene.list names them", scene), "params.scene"));
   }
-}
-
-void Stage::arm_end_timer() {
-  std::optional<ClockUs> first;
-  for (const auto& [name, document] : documents_) {
-    if (!document.published) continue;
-    const SceneView& view = *document.published;
-    for (std::size_t i = 0; i < view.players->size(); ++i) {
-      const Player& player = (*view.players)[i];
-      const auto end = player.end_us(player.range_of(*clip_of(*view.scene->actors[i], player)));
-      if (end && (!first || *end < *first)) first = end;
-    }
-  }
-  if (!first) {
-    end_timer_.cancel();
-    return;
-  }
-  end_timer_.expires_at(instant(*first));
-  end_timer_.async_wait([this](const boost::system::error_code& error) {
-    if (error) return;  // armed anew
-    end_players(steady_now_us());
-    arm_end_timer();
-  });
+  const SceneViewPtr before = at->second.published;
+  auto players = std::make_shared<Players>(*before->players);
+  auto concerned = change(PlayersTurn{*before->scene, *players, as_of_us, limits_});
+  if (!concerned) return done(concerned.error());
+  for (const std::size_t i : *concerned) (*players)[i].drop_fades(as_of_us);
+  const auto view = std::make_shared<const SceneView>(SceneView{before->scene, std::move(players), next_serial_++});
+  publish(scene, view);
+  done(PlayersAnswer{view, *concerned, as_of_us});
+  if (!concerned->empty()) listener_->players_changed(view, *concerned, as_of_us);
+  tell_starts(before, view, as_of_us);
+  settle(as_of_us);  // a `once` of no length is over as it starts
+  arm_timer();
 }
 
 }  // namespace tweend::stage

@@ -1,15 +1,18 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "render/picture.hpp"
 #include "server/model/camera.hpp"
+#include "server/model/evaluate.hpp"
 #include "server/stage/show.hpp"
 
 namespace tweend::streams {
 
-/// Turns what a scene shows into what is to be drawn: which keyframes of each actor with what weights, matrices, light.
-/// Keeps its memory from picture to picture. One thread at a time; the picture's spans last as long as the show.
+/// Turns what a scene shows into what is to be drawn: which keyframes of each actor with what weights, which palette and which
+/// morph weights, matrices, bones, light. Keeps its memory from picture to picture. One thread at a time; the picture's spans
+/// last as long as the show, this composer, and until it composes again.
 class FrameComposer {
  public:
   /// @param camera  empty, or one that can show nothing of this scene: the scene's
@@ -17,18 +20,22 @@ class FrameComposer {
                render::Picture& out);
 
  private:
-  /// What the renderer is told of an actor's mesh, made again only when it changes.
-  struct KnownMesh {
-    model::MeshPtr mesh;
-    render::MeshSourcePtr source;
+  /// What is kept of an actor: what the renderer is told of its model, made again only when that changes, and memory.
+  struct Slot {
+    model::ModelPtr model;
+    render::MeshSourcePtr source;  ///< null without a mesh
+    model::Evaluator evaluator;
+    std::vector<float> vertices;  ///< where neither keyframes nor a pose say all
   };
-  void add_actor(const stage::ActorShow& show, std::size_t index, render::Picture& out);
+  static void add_actor(const stage::ActorShow& show, Slot& slot, render::Picture& out);
+  static void set_pose(const stage::ActorShow& show, Slot& slot, render::DrawItem& item);
+  static void set_vertices(const stage::ActorShow& show, Slot& slot, render::DrawItem& item);
 
   [[nodiscard]] model::Camera camera_of(const model::ScenePtr& scene, const std::optional<model::CameraRequest>& own,
                                         render::Size size);
 
-  std::vector<KnownMesh> meshes_;  ///< by the actor's index
-  model::ScenePtr fitted_;         ///< what `visible_` holds; it takes a look at every keyframe
+  std::vector<Slot> slots_;  ///< by the actor's index
+  model::ScenePtr fitted_;   ///< what `visible_` holds; it takes a look at every keyframe
   std::optional<model::Bounds> visible_;
 };
 

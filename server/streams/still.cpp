@@ -22,7 +22,7 @@ class StillJob final : public render::FrameJob, public std::enable_shared_from_t
     } else {
       stage::show_at(*request_.view, request_.now_us, show_);
     }
-    FrameComposer().compose(show_, request_.camera, request_.size, picture_);
+    composer_.compose(show_, request_.camera, request_.size, picture_);
     renderer.submit(shared_from_this(), request_.now_us + kPatienceUs);
   }
 
@@ -37,6 +37,7 @@ class StillJob final : public render::FrameJob, public std::enable_shared_from_t
   const StillRequest request_;
   const DrawnStillDone done_;
   stage::Show show_;
+  FrameComposer composer_;  ///< the picture borrows of it
   render::Picture picture_;
 };
 

@@ -9,10 +9,15 @@
 #include <new>
 #include <vector>
 
+#include "server/animation/blend_poses.hpp"
 #include "server/animation/blend_vertices.hpp"
 #include "server/animation/key_blend.hpp"
+#include "server/animation/local_to_model.hpp"
+#include "server/animation/morph_vertices.hpp"
+#include "server/animation/skin_vertices.hpp"
 #include "server/animation/vertex_normals.hpp"
 #include "server/animation/vertex_tangents.hpp"
+#include "tests/animation/random_tracks.hpp"
 
 namespace {
 
@@ -28,6 +33,14 @@ void* counted(std::size_t size) {
 
 void* operator new(std::size_t size) { return counted(size); }
 void* operator new[](std::size_t size) { return counted(size); }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto step = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) return memory;
+  std::abort();
+}
+void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
 void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete[](void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
@@ -68,6 +81,48 @@ TEST(Allocation, SuccessTakesNoMemory) {
   }
   all_succeeded = all_succeeded && compute_normals(stream, indices, normals);
   all_succeeded = all_succeeded && compute_tangents(stream, normals, texcoords, indices, tangents);
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(all_succeeded);
+}
+
+TEST(Allocation, PlayingASkeletonTakesNoMemory) {
+  RandomTracks random(1);
+  std::vector<reference::Track> tracks;
+  std::vector<TrackSource> sources;
+  const std::vector<double> shared_times = random.times_s(9, 2.0, true);
+  for (std::uint32_t joint = 0; joint < 40; ++joint) {
+    const std::vector<double> own_times = random.times_s(5, 2.0, false);
+    tracks.push_back(random.track({joint, Property::Rotation}, shared_times, {{Interpolation::Linear, {}}}));
+    tracks.push_back(random.track({joint, Property::Translation}, own_times, random.modes(5)));
+  }
+  for (const reference::Track& track : tracks) sources.push_back(track.source());
+  const TrackSet set(sources, 2.0, true);
+  Pose pose, rest;
+  pose.reset(40, 2);
+  rest.reset(40, 2);
+  const std::vector<float> mask(40, 0.5F);
+  std::vector<std::int32_t> parents(40, 0);
+  parents[0] = -1;
+  std::vector<Affine> palette(40);
+  const std::vector<std::uint16_t> entries(400, 3);
+  const std::vector<float> weights(400, 0.25F);
+  const std::vector<float> stream(300, 0.5F);
+  std::vector<float> positions(300), normals(300);
+  const std::array targets{MorphTargetView{10, 90, {std::span(stream).first(270), std::span(stream).first(270), {}}},
+                           MorphTargetView{0, 100, {stream, stream, {}}}};
+  bool all_succeeded = true;
+
+  const std::size_t before = allocations;
+  for (int i = 0; i <= 20; ++i) {
+    pose.reset(40, 2);
+    set.sample(i / 10.0, Interpolation::CatmullRom, pose);
+    blend_poses(rest, 0.3F, mask, pose);
+    add_pose(rest, rest, 0.3F, {}, pose);
+    local_to_model(parents, pose, palette);
+    const auto status = skin_vertices({4, entries, weights}, palette, {stream, stream, {}}, {positions, normals, {}});
+    all_succeeded = all_succeeded && status;
+    morph_vertices(targets, std::array{0.5F, 0.25F}, {positions, normals, {}});
+  }
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(all_succeeded);
 }

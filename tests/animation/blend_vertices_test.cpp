@@ -1,7 +1,6 @@
 #include "server/animation/blend_vertices.hpp"
 
 #include <gtest/gtest.h>
-#include <hwy/highway.h>
 
 #include <array>
 #include <bit>
@@ -10,6 +9,8 @@
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "tests/animation/every_target.hpp"
 
 namespace tweend::animation {
 namespace {
@@ -104,20 +105,8 @@ void expect_matches_double(Scene& scene, const std::vector<VertexAttributes>& so
   }
 }
 
-/// Every test below runs once per kind of vector unit that this machine has.
-class BlendVertices : public testing::TestWithParam<std::int64_t> {
- protected:
-  void SetUp() override {
-    hwy::SetSupportedTargetsForTest(GetParam());
-    hwy::GetChosenTarget().DeInit();  // choose anew at the next call
-  }
-  void TearDown() override {
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
-  }
-};
-INSTANTIATE_TEST_SUITE_P(Targets, BlendVertices, testing::ValuesIn(hwy::SupportedAndGeneratedTargets()),
-                         [](const auto& target) { return std::string(hwy::TargetName(target.param)); });
+class BlendVertices : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(BlendVertices);
 
 TEST_P(BlendVertices, MatchesDoubleForEveryLengthAlignmentAndSourceCount) {
   for (std::size_t vertices = 1; vertices <= 70; ++vertices) {

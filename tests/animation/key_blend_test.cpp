@@ -66,6 +66,7 @@ double reference(const Clip& clip, double t, Interpolation mode, const CubicBezi
   const double h = p[i + 1].t - p[i].t;
   if (mode == Interpolation::Step) return p[i].x;
   double u = (t - p[i].t) / h;
+  if (mode == Interpolation::Cubic) return p[i].x + (p[i + 1].x - p[i].x) * u * u * (3 - 2 * u);  // tangents 0, never eased
   if (easing != nullptr) u = ease(*easing, u);
   if (mode == Interpolation::Linear) return p[i].x + (p[i + 1].x - p[i].x) * u;
   const double m0 = h * tangent(p, i);
@@ -95,7 +96,8 @@ std::vector<double> instants(const Clip& clip) {
 }
 
 constexpr CubicBezier kOvershoot{0.68F, -0.6F, 0.32F, 1.6F};
-constexpr Interpolation kModes[] = {Interpolation::Step, Interpolation::Linear, Interpolation::CatmullRom};
+constexpr Interpolation kModes[] = {Interpolation::Step, Interpolation::Linear, Interpolation::CatmullRom,
+                                    Interpolation::Cubic};
 
 TEST(BlendKeys, MatchesTheDefinitionInEveryMode) {
   for (const Clip& clip : clips()) {

@@ -8,6 +8,7 @@
 #include <glm/mat4x4.hpp>
 #include <vector>
 
+#include "tests/animation/every_target.hpp"
 #include "tests/animation/random_tracks.hpp"
 
 namespace tweend::animation {
@@ -56,7 +57,10 @@ void expect_near(const Affine& found, const glm::dmat4& expected, double toleran
   }
 }
 
-TEST(LocalToModel, IsTheProductOfAllMatricesAboveForAnyNumberOfJoints) {
+class LocalToModel : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(LocalToModel);
+
+TEST_P(LocalToModel, IsTheProductOfAllMatricesAboveForAnyNumberOfJoints) {
   for (std::size_t joints = 1; joints <= 300; joints += joints < 70 ? 1 : 23) {
     const Skeleton skeleton = random_skeleton(static_cast<std::uint32_t>(joints), joints, 8, 40);
     std::vector<Affine> found(joints);
@@ -66,7 +70,7 @@ TEST(LocalToModel, IsTheProductOfAllMatricesAboveForAnyNumberOfJoints) {
   }
 }
 
-TEST(LocalToModel, FollowsAChainOfAllJoints) {
+TEST_P(LocalToModel, FollowsAChainOfAllJoints) {
   const Skeleton chain = random_skeleton(1, 200, 1, 1000);
   std::vector<Affine> found(200);
   local_to_model(chain.parents, chain.pose, found);
@@ -78,7 +82,7 @@ TEST(LocalToModel, FollowsAChainOfAllJoints) {
   }
 }
 
-TEST(LocalToModel, TakesOnlyRootsAndNothingAtAll) {
+TEST_P(LocalToModel, TakesOnlyRootsAndNothingAtAll) {
   const Skeleton roots = random_skeleton(2, 33, 1, 1);
   std::vector<Affine> found(33);
   local_to_model(roots.parents, roots.pose, found);
@@ -89,7 +93,7 @@ TEST(LocalToModel, TakesOnlyRootsAndNothingAtAll) {
   local_to_model({}, none, {});
 }
 
-TEST(LocalToModel, TheSameJointComesOutTheSameInAnyLane) {
+TEST_P(LocalToModel, TheSameJointComesOutTheSameInAnyLane) {
   Skeleton skeleton = random_skeleton(3, 40, 1, 1);
   for (std::size_t j = 1; j < 40; ++j) skeleton.pose.set_joint(j, skeleton.pose.joint(0));
   std::vector<Affine> found(40);

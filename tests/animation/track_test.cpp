@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/animation/every_target.hpp"
 #include "tests/animation/random_tracks.hpp"
 #include "tests/animation/reference_track.hpp"
 
@@ -100,7 +101,10 @@ bool is_ambiguous(const reference::Track& track) {
   return false;
 }
 
-TEST(TrackSet, ShowsWhatTheDefinitionSaysInRandomClipsOfAllModes) {
+class SampledTracks : public EveryTarget {};
+TWEEND_ON_EVERY_TARGET(SampledTracks);
+
+TEST_P(SampledTracks, ShowsWhatTheDefinitionSaysInRandomClipsOfAllModes) {
   std::size_t compared = 0;
   for (std::uint32_t seed = 0; seed < 120; ++seed) {
     const Clip clip = random_clip(seed);
@@ -124,7 +128,7 @@ TEST(TrackSet, ShowsWhatTheDefinitionSaysInRandomClipsOfAllModes) {
   EXPECT_GT(compared, 100'000U);
 }
 
-TEST(TrackSet, LeavesChannelsWithoutATrackAndThePaddingAlone) {
+TEST_P(SampledTracks, LeavesChannelsWithoutATrackAndThePaddingAlone) {
   for (std::uint32_t seed = 0; seed < 30; ++seed) {
     const Clip clip = random_clip(seed);
     Pose pose;
@@ -151,7 +155,7 @@ TEST(TrackSet, LeavesChannelsWithoutATrackAndThePaddingAlone) {
   }
 }
 
-TEST(TrackSet, IsEachKeyBitForBitAtItsTime) {
+TEST_P(SampledTracks, IsEachKeyBitForBitAtItsTime) {
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
     const Clip clip = random_clip(seed);
     const TrackSet set = clip.packed();
@@ -168,7 +172,7 @@ TEST(TrackSet, IsEachKeyBitForBitAtItsTime) {
   }
 }
 
-TEST(TrackSet, DoesNotDependOnTheTimeBefore) {
+TEST_P(SampledTracks, DoesNotDependOnTheTimeBefore) {
   const Clip clip = random_clip(5);
   const TrackSet set = clip.packed();
   RandomTracks random(1);
@@ -184,7 +188,7 @@ TEST(TrackSet, DoesNotDependOnTheTimeBefore) {
   }
 }
 
-TEST(TrackSet, ATracksValueDoesNotDependOnItsPlaceOrItsNeighbours) {
+TEST_P(SampledTracks, ATracksValueDoesNotDependOnItsPlaceOrItsNeighbours) {
   RandomTracks random(3);
   const std::vector<double> times = random.times_s(9, 2.0, false);
   for (const Interpolation mode :
@@ -215,7 +219,7 @@ Clip between(const glm::vec4& from, const glm::vec4& to, KeyMode mode = {Interpo
   return {.tracks = {{{0, Property::Rotation}, {0.0, 1.0}, {from, to}, {}, {}, {mode}}}};
 }
 
-TEST(TrackSet, SlerpsArcsOfEveryWidth) {
+TEST_P(SampledTracks, SlerpsArcsOfEveryWidth) {
   RandomTracks random(11);
   Pose pose;
   pose.reset(1, 0);
@@ -234,7 +238,7 @@ TEST(TrackSet, SlerpsArcsOfEveryWidth) {
   }
 }
 
-TEST(TrackSet, TakesEitherWayWhereBothAreAsShortAndNoneWhereThereIsNone) {
+TEST_P(SampledTracks, TakesEitherWayWhereBothAreAsShortAndNoneWhereThereIsNone) {
   Pose pose;
   pose.reset(1, 0);
   const Clip half_turn = between({0, 0, 0, 1}, {0, 1, 0, 0});
@@ -249,7 +253,7 @@ TEST(TrackSet, TakesEitherWayWhereBothAreAsShortAndNoneWhereThereIsNone) {
   }
 }
 
-TEST(TrackSet, FollowsAnEasingBeyondBothEnds) {
+TEST_P(SampledTracks, FollowsAnEasingBeyondBothEnds) {
   Pose pose;
   pose.reset(1, 0);
   for (const double reach : {0.0, 1.5, 6.0, 40.0}) {
@@ -263,7 +267,7 @@ TEST(TrackSet, FollowsAnEasingBeyondBothEnds) {
   }
 }
 
-TEST(TrackSet, CatmullRomRotationsHaveOneAngularVelocityAtEachKey) {
+TEST_P(SampledTracks, CatmullRomRotationsHaveOneAngularVelocityAtEachKey) {
   RandomTracks random(21);
   for (const bool closed : {false, true}) {
     Clip clip{.duration_s = 6.0, .closed = closed};
@@ -292,7 +296,7 @@ TEST(TrackSet, CatmullRomRotationsHaveOneAngularVelocityAtEachKey) {
   }
 }
 
-TEST(TrackSet, ABlendThatLeavesNoRotationHoldsTheKey) {
+TEST_P(SampledTracks, ABlendThatLeavesNoRotationHoldsTheKey) {
   Clip clip = between({0, 0, 0, 1}, {0, 0, 0, -1}, {Interpolation::Cubic, {}});  // cubic turns nothing around
   Pose pose;
   pose.reset(1, 0);
@@ -300,7 +304,7 @@ TEST(TrackSet, ABlendThatLeavesNoRotationHoldsTheKey) {
   EXPECT_EQ(shown(pose, clip.tracks[0].channel), glm::dvec4(0, 0, 0, 1));
 }
 
-TEST(TrackSet, WithoutTracksChangesNothing) {
+TEST_P(SampledTracks, WithoutTracksChangesNothing) {
   const TrackSet set({}, 1.0, true);
   Pose pose;
   pose.reset(0, 0);

@@ -27,10 +27,11 @@ class GpuCacheOnGpu : public testing::Test {
     return show(cache, shape).bytes();
   }
   static GpuMesh& show(GpuCache& cache, const Shape& shape) {
+    FrameMemory memory;
     cache.begin_picture();
     const DrawItem item = shape.item();
     GpuMesh& mesh = cache.mesh(*item.mesh);
-    mesh.bind(item);
+    mesh.bind(item, memory);
     return mesh;
   }
   test::Offscreen gpu_;
@@ -78,10 +79,11 @@ TEST_F(GpuCacheOnGpu, LetsGoOfWhatWasShownLongestAgoBeyondItsBudget) {
 
 TEST_F(GpuCacheOnGpu, KeepsWhatTheLastPictureShowedHoweverSmallItsBudget) {
   GpuCache cache(1);
+  FrameMemory memory;
   const Shape a = test::square(1.0F), b = test::square(2.0F);
   for (int picture = 0; picture < 3; ++picture) {
     cache.begin_picture();
-    for (const Shape* shape : {&a, &b}) cache.mesh(*shape->source()).bind(shape->item());
+    for (const Shape* shape : {&a, &b}) cache.mesh(*shape->source()).bind(shape->item(), memory);
   }
   EXPECT_EQ(cache.key_uploads(), 2U) << "a scene beyond the budget is not uploaded anew for each picture";
   static_cast<void>(show(cache, a));

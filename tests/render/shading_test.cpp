@@ -255,5 +255,24 @@ TEST_F(Shading, OnePictureLeavesNothingBehindForTheNext) {
   EXPECT_EQ(draw(plain), before);
 }
 
+TEST_F(Shading, TrianglesThatAJointMirrorsAreLitFromTheirOutside) {
+  Shape shape = test::square(2.0F);
+  shape.influences = 1;
+  shape.entries.assign(4, 0);
+  Picture picture = looking_at_origin();
+  picture.light = {{1.0F, 1.0F, 3.0F}, 0.1F, 0.9F, 0.0F, 1.0F};
+  picture.items = {shape.item()};
+  const Image expected = draw(picture);
+  ASSERT_GT(expected.at(24, 24)[0], 150);
+  // Row by row: across x, and where it is.
+  const std::array<float, 12> mirrored{-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+  for (const float actor : {1.0F, -1.0F}) {
+    picture.items[0].palette = mirrored;
+    picture.items[0].world_from_model[0][0] = actor;
+    const Image found = draw(picture);
+    for (std::size_t i = 0; i < found.rgb.size(); ++i) EXPECT_NEAR(found.rgb[i], expected.rgb[i], 1) << "actor " << actor;
+  }
+}
+
 }  // namespace
 }  // namespace tweend::render

@@ -5,6 +5,7 @@
 #include <glm/ext/matrix_transform.hpp>
 #include <vector>
 
+#include "tests/render/support/flat.hpp"
 #include "tests/render/support/light.hpp"
 #include "tests/render/support/offscreen.hpp"
 #include "tests/render/support/shape.hpp"
@@ -23,17 +24,7 @@ constexpr std::uint32_t kTexels = 4;   // a side
 constexpr std::uint32_t kTexelPx = 9;  // pixels a texel: odd, so that one pixel's centre is the texel's
 constexpr Size kSize{kTexels * kTexelPx, kTexels* kTexelPx};
 
-/// The square from -1 to 1 fills the picture, without perspective.
-Picture flat_picture() {
-  Picture picture;
-  picture.size = kSize;
-  picture.view.eye = {0.0F, 0.0F, 5.0F};
-  picture.view.view_from_world = glm::lookAt(picture.view.eye, glm::vec3(0.0F), glm::vec3(0.0F, 1.0F, 0.0F));
-  picture.view.clip_from_view = glm::ortho(-1.0F, 1.0F, -1.0F, 1.0F, 0.1F, 10.0F);
-  picture.light.position = {0.0F, 0.0F, 5.0F};
-  picture.light.ambient = 1.0F;  // of a normal that is neither up nor down: as bright as the texture
-  return picture;
-}
+Picture flat_picture() { return test::flat_picture(kSize); }
 
 std::vector<std::uint8_t> numbered_texels() {
   std::vector<std::uint8_t> rgba;

@@ -144,7 +144,7 @@ TEST(FrameComposer, TellsOfAMeshOnlyOnce) {
 
   composer.compose(show_of({b}, 1.5), {}, kWide, picture);
   ASSERT_EQ(picture.items.size(), 1U);
-  EXPECT_EQ(picture.items[0].mesh->owner, b->model->mesh) << "another mesh in the place of the first";
+  EXPECT_EQ(picture.items[0].mesh->owner, b->model) << "another mesh in the place of the first";
   const std::weak_ptr<const render::MeshSource> let_go = of_a;
   EXPECT_EQ(let_go.use_count(), 1) << "only this test holds what is not shown any more";
 }
@@ -160,7 +160,7 @@ TEST(FrameComposer, TellsOfAMeshAllThatItIs) {
   EXPECT_EQ(source.parts[0].index_count, 6U);
   ASSERT_EQ(source.materials.size(), 1U);
   EXPECT_EQ(source.materials[0].base_color, model::Material{}.base_color);
-  EXPECT_EQ(source.owner, actor->model->mesh);
+  EXPECT_EQ(source.owner, actor->model);
 }
 
 TEST(FrameComposer, LooksThroughTheScenesCameraWithoutAnOwnOne) {

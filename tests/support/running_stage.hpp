@@ -27,15 +27,18 @@ inline constexpr std::chrono::seconds kPatience{60};
 /// A stage that runs on a controlled store, what its listener was told, and calls that wait for the answer.
 class RunningStage : public stage::StageListener {
  public:
-  enum class Kind { Published, Edited, PlayersChanged, PlayerEnded };
+  enum class Kind { Published, Edited, PlayersChanged, PlayerEnded, MarkersCrossed, ScheduleFailed };
   /// One call of the listener.
   struct Told {
     Kind kind;
     std::string scene;
-    stage::SceneViewPtr view;              ///< Published, PlayersChanged, PlayerEnded
-    std::vector<std::size_t> players;      ///< PlayersChanged, PlayerEnded
-    std::optional<stage::EditEvent> edit;  ///< Edited
-    ClockUs at_us = 0;                     ///< PlayersChanged
+    stage::SceneViewPtr view;                   ///< Published, PlayersChanged, PlayerEnded
+    std::vector<std::size_t> players;           ///< PlayersChanged, PlayerEnded
+    std::optional<stage::EditEvent> edit;       ///< Edited
+    ClockUs at_us = 0;                          ///< PlayersChanged
+    std::vector<stage::MarkerCrossed> crossed;  ///< MarkersCrossed
+    std::optional<stage::Scheduled> scheduled;  ///< ScheduleFailed
+    std::optional<Error> error;                 ///< ScheduleFailed
   };
   using Answer = Result<std::string>;
 
@@ -183,15 +186,24 @@ class RunningStage : public stage::StageListener {
 
   void published(const std::string& scene, const stage::SceneViewPtr& v) override {
     if (on_published_) on_published_(scene, v);
-    record({Kind::Published, scene, v, {}, {}, 0});
+    record({Kind::Published, scene, v, {}, {}, 0, {}, {}, {}});
   }
-  void edited(const stage::EditEvent& event) override { record({Kind::Edited, event.scene, nullptr, {}, event, 0}); }
+  void edited(const stage::EditEvent& event) override {
+    record({Kind::Edited, event.scene, nullptr, {}, event, 0, {}, {}, {}});
+  }
   void players_changed(const stage::SceneViewPtr& v, const std::vector<std::size_t>& concerned, ClockUs now_us) override {
-    record({Kind::PlayersChanged, v->scene->name, v, concerned, {}, now_us});
+    record({Kind::PlayersChanged, v->scene->name, v, concerned, {}, now_us, {}, {}, {}});
   }
   void player_ended(const stage::SceneViewPtr& v, std::size_t player) override {
-    record({Kind::PlayerEnded, v->scene->name, v, {player}, {}, 0});
+    record({Kind::PlayerEnded, v->scene->name, v, {player}, {}, 0, {}, {}, {}});
     if (on_ended) on_ended(v);
+  }
+
+  void markers_crossed(const std::string& scene, const std::vector<stage::MarkerCrossed>& crossed) override {
+    record({Kind::MarkersCrossed, scene, nullptr, {}, {}, 0, crossed, {}, {}});
+  }
+  void schedule_failed(const stage::Scheduled& scheduled, const Error& error) override {
+    record({Kind::ScheduleFailed, scheduled.scene, nullptr, {}, {}, 0, {}, scheduled, error});
   }
 
   /// Called on the strand; set before start().

@@ -1,6 +1,7 @@
 #include "tests/render/support/offscreen.hpp"
 
 #include <array>
+#include <glm/vec3.hpp>
 #include <stdexcept>
 #include <string>
 
@@ -16,6 +17,9 @@ void main() {
   tweened_position = TWEENED_POSITION;
   tweened_normal = TWEENED_NORMAL;
   tweened_tangent = TWEENED_TANGENT;
+#ifdef POSED
+  deform(tweened_position, tweened_normal);
+#endif
   gl_Position = vec4(0.0);
 }
 )";
@@ -46,7 +50,7 @@ Image Offscreen::draw(const Picture& picture, int samples) {
 
 Tweened capture_tween(GpuCache& cache, const DrawItem& item) {
   constexpr std::array<const char*, 3> kCaptured{"tweened_position", "tweened_normal", "tweened_tangent"};
-  const std::string prologue = tween_prologue(item.key_count <= 2 ? static_cast<int>(item.key_count) : 4);
+  const std::string prologue = vertex_prologue(variant_of(item));
   const auto program = ShaderProgram::link({prologue, kCaptureMain}, {}, kCaptured);
   EXPECT_TRUE(program) << program.error().message;
   program->use();
@@ -60,7 +64,9 @@ Tweened capture_tween(GpuCache& cache, const DrawItem& item) {
   EXPECT_TRUE(target) << target.error().message;
   glBindFramebuffer(GL_FRAMEBUFFER, (*target)->framebuffer());
   cache.begin_picture();
-  cache.mesh(*item.mesh).bind(item);
+  FrameMemory memory;
+  const PosePlace pose = cache.mesh(*item.mesh).bind(item, memory);
+  program->set(program->location("pose_at"), glm::ivec3(pose.palette, pose.targets, pose.target_count));
   glEnable(GL_RASTERIZER_DISCARD);
   glBindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, written.name());
   glBeginTransformFeedback(GL_POINTS);

@@ -33,8 +33,8 @@ struct Tweened {
   std::vector<float> tangents;  ///< only of a mesh with texture coordinates
 };
 
-/// Runs the item's vertices through the tween of render/shaders, bound by the real GpuMesh, and reads them back by
-/// transform feedback. The calling thread has a context.
+/// Runs the item's vertices through the tween, the morphing and the skinning of render/shaders (tangents through the tween
+/// only), bound by the real GpuMesh, and reads them back by transform feedback. The calling thread has a context.
 [[nodiscard]] Tweened capture_tween(GpuCache& cache, const DrawItem& item);
 
 /// What is in a buffer object, from an offset on.

@@ -30,6 +30,9 @@ MeshSourcePtr Shape::source() const {
   mesh.vertex_count = vertex_count;
   mesh.indices = indices;
   mesh.texcoords = texcoords;
+  mesh.colors = colors;
+  mesh.skin = {influences, entries, entry_weights};
+  mesh.morphs = morphs;
   mesh.materials = materials;
   mesh.parts = parts;
   if (parts.empty()) mesh.parts.push_back({0, static_cast<std::uint32_t>(indices.size()), 0});

@@ -19,9 +19,14 @@ struct Shape {
   std::size_t vertex_count = 0;
   std::vector<std::uint32_t> indices;
   std::vector<float> texcoords;               ///< shape [vertex_count × 2], or empty
+  std::vector<float> colors;                  ///< shape [vertex_count × 4], or empty
   std::vector<std::vector<float>> blocks;     ///< one a keyframe, as KeySource has them
   std::vector<MaterialSource> materials{{}};  ///< white at first
   std::vector<PartSource> parts;              ///< empty: one part, material 0
+  std::size_t influences = 0;                 ///< a vertex: 1, 4 or 8; 0: no skin
+  std::vector<std::uint16_t> entries;         ///< shape [vertex_count × influences]
+  std::vector<float> entry_weights;           ///< the same shape
+  std::vector<MorphSource> morphs;            ///< of spans that last
   std::uint64_t name = 0;
 
   /// Adds a keyframe; tangents are +X, which light does not look at.
