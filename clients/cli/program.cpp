@@ -40,6 +40,7 @@ void add_every_family(CommandSet& commands) {
   add_actor_commands(commands);
   add_keyframe_commands(commands);
   add_clip_commands(commands);
+  add_pose_commands(commands);
   add_edit_commands(commands);
   add_playback_commands(commands);
   add_marker_commands(commands);

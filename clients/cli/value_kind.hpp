@@ -28,6 +28,8 @@ struct ValueKind {
 [[nodiscard]] ValueKind count(std::string shape = "N");
 /// Numbers separated by commas, as many as one of `sizes` says.
 [[nodiscard]] ValueKind numbers(std::string shape, std::initializer_list<std::size_t> sizes);
+/// Any count of numbers separated by commas.
+[[nodiscard]] ValueKind any_numbers(std::string shape);
 /// Integers separated by commas.
 [[nodiscard]] ValueKind integers(std::string shape);
 /// Texts separated by commas.
@@ -38,6 +40,8 @@ struct ValueKind {
 [[nodiscard]] ValueKind or_none(const ValueKind& kind);
 /// The JSON in a file; `-` is `in`.
 [[nodiscard]] ValueKind json_file(std::istream& in);
+/// JSON as it stands, or with `@` before it the JSON in a file; `@-` is `in`.
+[[nodiscard]] ValueKind json_or_file(std::istream& in);
 /// Three numbers, or one for all three axes.
 [[nodiscard]] ValueKind scale();
 /// An angle in radians about +Y, as a quaternion.

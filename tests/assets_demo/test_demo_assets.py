@@ -8,7 +8,7 @@ import os
 import sys
 import unittest
 
-from glb_file import GlbFile
+from glb_file import GlbFile, moved
 from obj_file import ObjFile, png_pixels
 
 ASSETS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "assets")
@@ -193,9 +193,10 @@ class Demo(unittest.TestCase):
 
     def ground_box(self, actor):
         shown = self.all_poses(actor["asset"])
-        move, grow = actor["transform"]["translation"], actor["transform"].get("scale", [1, 1, 1])
-        return [(min(p[axis] for p in shown) * grow[axis] + move[axis], max(p[axis] for p in shown) * grow[axis] + move[axis])
-                for axis in (0, 2)]
+        transform = actor["transform"]
+        turn, grow = tuple(transform.get("rotation", (0, 0, 0, 1))), transform.get("scale", [1, 1, 1])
+        places = [moved(turn, transform["translation"], [x * s for x, s in zip(p, grow)]) for p in shown]
+        return [(min(p[axis] for p in places), max(p[axis] for p in places)) for axis in (0, 2)]
 
     def all_poses(self, asset):
         if asset == "walker.glb":

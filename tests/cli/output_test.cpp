@@ -44,7 +44,7 @@ TEST(Output, EditsAreASentenceWithTheRevision) {
             "actor box removed (revision 5)\n");
   EXPECT_EQ(output({"add", "box", "--asset", "a.obj"}, "actor.add", R"({"actor":"box","asset":"a.obj"})",
                    R"({"actor":"box","clips":["default"],"vertices":8,"joints":0,"revision":6})"),
-            "actor box added: 8 vertices, clips default (revision 6)\n");
+            "actor box added: 8 vertices, 0 joints, clips default (revision 6)\n");
 }
 
 TEST(Output, ListsAreTables) {
