@@ -15,6 +15,7 @@ void add_playback_commands(CommandSet& commands);    ///< play, pause, stop, see
 void add_view_commands(CommandSet& commands);        ///< camera, light
 void add_sample_commands(CommandSet& commands);      ///< vertices
 void add_frame_commands(CommandSet& commands);       ///< frame
+void add_export_commands(CommandSet& commands);      ///< export
 void add_event_commands(CommandSet& commands);       ///< events, wait …
 void add_watch_commands(CommandSet& commands);       ///< watch …
 void add_raw_commands(CommandSet& commands);         ///< call, methods

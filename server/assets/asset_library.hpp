@@ -51,6 +51,10 @@ class AssetLibrary {
   ///         vertices_per_actor, keyframes_per_clip); Unavailable if memory runs out
   [[nodiscard]] Result<model::ImportedModel> import(std::string_view name, const ImportOptions& options = {}) const;
 
+  /// Where new assets are saved: the first assets folder.
+  /// @return Unavailable where there is none
+  [[nodiscard]] Result<const AssetRoot*> first_folder() const;
+
  private:
   [[nodiscard]] Result<model::ImportedModel> find_and_import(std::string_view name, const ImportOptions& options = {}) const;
   [[nodiscard]] Result<std::optional<model::ImportedModel>> import_from(const AssetRoot& root, std::string_view name,

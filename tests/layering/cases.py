@@ -19,6 +19,8 @@ CASES = [
     ("server/base/a.hpp", "#include <nlohmann/json_fwd.hpp>", "JSON stays"),
     ("protocol/a.hpp", "#include <nlohmann/json.hpp>", "JSON stays"),
     ("protocol/a.cpp", "#include <nlohmann/json.hpp>", ""),
+    ("server/assets/a.cpp", "#include <nlohmann/json.hpp>", ""),
+    ("server/assets/a.hpp", "#include <nlohmann/json.hpp>", "JSON stays"),
     ("protocol/json_node.hpp", "#include <nlohmann/json.hpp>", ""),
     ("server/commands/a.hpp", '#include "protocol/json_value.hpp"', ""),
     ("clients/cli/a.hpp", "#include <nlohmann/json.hpp>", ""),

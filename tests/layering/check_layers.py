@@ -103,6 +103,7 @@ def arrows_down(inc: Include) -> str | None:
 
 
 JSON_PRIVATE_HEADER = "protocol/json_node.hpp"
+JSON_IN_SOURCES = ("protocol", "assets")  # the wire, and files that are JSON
 
 
 def json_stays_in_protocol(inc: Include) -> str | None:
@@ -110,9 +111,9 @@ def json_stays_in_protocol(inc: Include) -> str | None:
         return "it is the protocol layer's private header: for its .cpp files only"
     if not inc.target.startswith("nlohmann/"):
         return None
-    if inc.layer == "cli" or inc.file == JSON_PRIVATE_HEADER or (inc.layer == "protocol" and not inc.in_header):
+    if inc.layer == "cli" or inc.file == JSON_PRIVATE_HEADER or (inc.layer in JSON_IN_SOURCES and not inc.in_header):
         return None
-    return "JSON stays in the .cpp files of protocol/ and in clients/cli; pass structs"
+    return "JSON stays in the .cpp files of protocol/ and server/assets, and in clients/cli; pass structs"
 
 
 ASIO_NEVER = ("animation", "model", "protocol", "assets")
