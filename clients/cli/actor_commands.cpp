@@ -1,6 +1,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/common_options.hpp"
 #include "clients/cli/families.hpp"
+#include "clients/cli/timing.hpp"
 
 namespace tweend::cli {
 
@@ -28,7 +29,7 @@ void add_actor_commands(CommandSet& commands) {
           .optional_argument("NAME", "actor", text("ACTOR"), "which actor; may be left out where the scene has one")
           .toggle("--visible", "--hidden", "visible", "show it")
           .option("--spin", "spin", number(), "radians a second about +Y while playing");
-  with_edit_options(with_transform(with_interpolation(update, true)))
+  with_timing(with_edit_options(with_transform(with_interpolation(update, true))))
       .needs_one_of(
           {"--translation", "--rotation", "--rotate-y", "--scale", "--interpolation", "--visible", "--hidden", "--spin"})
       .requests("actor.update", "actor updated");

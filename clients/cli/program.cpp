@@ -42,6 +42,9 @@ void add_every_family(CommandSet& commands) {
   add_clip_commands(commands);
   add_edit_commands(commands);
   add_playback_commands(commands);
+  add_marker_commands(commands);
+  add_layer_commands(commands);
+  add_schedule_commands(commands);
   add_view_commands(commands);
   add_sample_commands(commands);
   add_frame_commands(commands);

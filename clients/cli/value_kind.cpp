@@ -102,6 +102,14 @@ ValueKind integers(std::string shape) {
           }};
 }
 
+ValueKind texts(std::string shape) {
+  return {std::move(shape), [](const std::string& found) {
+            Json values = Json::array();
+            for (const auto part : split(found, ',')) values.push_back(part);
+            return values;
+          }};
+}
+
 ValueKind word(const std::string& shape) {
   return {shape, [shape](const std::string& found) {
             const auto words = split(shape, '|');

@@ -30,6 +30,8 @@ struct ValueKind {
 [[nodiscard]] ValueKind numbers(std::string shape, std::initializer_list<std::size_t> sizes);
 /// Integers separated by commas.
 [[nodiscard]] ValueKind integers(std::string shape);
+/// Texts separated by commas.
+[[nodiscard]] ValueKind texts(std::string shape);
 /// One of the words of `shape`, `a|b|c`.
 [[nodiscard]] ValueKind word(const std::string& shape);
 /// The same, and the word `none` for null, which clears a setting.

@@ -1,5 +1,7 @@
 #include "server/app/loader.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <future>
 #include <memory>
@@ -17,6 +19,19 @@ using commands::Command;
 Result<commands::Params> parameters(const Command& command, const std::string& json, const Limits& limits) {
   TWEEND_ASSIGN(const protocol::JsonValue value, protocol::JsonValue::parse(json, limits));
   return commands::decode_params(command, value);
+}
+
+/// Carries out a command to players of the scene main by its method's name and parameters. Waits for it.
+Status run_players(const commands::Services& services, std::string_view method, const std::string& json) {
+  const Command& command = *commands::find_command(method);
+  TWEEND_ASSIGN(const commands::Params params, parameters(command, json, services.limits));
+  std::promise<Status> promise;
+  services.stage.change_players(
+      "main", [&](const stage::PlayersTurn& turn) { return command.players(params.get(), turn); },
+      [&promise](const Result<stage::PlayersAnswer>& answer) {
+        promise.set_value(answer ? Status() : Status(answer.error()));
+      });
+  return promise.get_future().get();
 }
 
 }  // namespace
@@ -60,16 +75,15 @@ Status load_asset(const commands::Services& services, const std::string& asset) 
   return run_edit(services, "actor.add", json);
 }
 
-Status play_all(const commands::Services& services) {
-  const Command& command = *commands::find_command("playback.play");
-  TWEEND_ASSIGN(const commands::Params params, parameters(command, "{}", services.limits));
-  std::promise<Status> promise;
-  services.stage.change_players(
-      "main", [&](const stage::PlayersTurn& turn) { return command.players(params.get(), turn); },
-      [&promise](const Result<stage::PlayersAnswer>& answer) {
-        promise.set_value(answer ? Status() : Status(answer.error()));
-      });
-  return promise.get_future().get();
+Status show_clip(const commands::Services& services, const std::string& actor, const std::string& clip) {
+  std::string actor_json, clip_json;
+  protocol::append_json_string(actor, actor_json);
+  protocol::append_json_string(clip, clip_json);
+  TWEEND_TRY(
+      run_players(services, "playback.play", fmt::format(R"({{"actor":{},"clip":{},"time":0}})", actor_json, clip_json)));
+  return run_players(services, "playback.pause", fmt::format(R"({{"actor":{}}})", actor_json));
 }
+
+Status play_all(const commands::Services& services) { return run_players(services, "playback.play", "{}"); }
 
 }  // namespace tweend::app

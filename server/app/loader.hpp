@@ -20,6 +20,10 @@ namespace tweend::app {
 /// Not for the stage's or a worker's thread.
 [[nodiscard]] Status run_edit(const commands::Services& services, std::string_view method, const std::string& params_json);
 
+/// Puts an actor of the scene main on a clip, at its start and paused. Waits for it.
+/// @return NotFound where it has none of that name
+[[nodiscard]] Status show_clip(const commands::Services& services, const std::string& actor, const std::string& clip);
+
 /// Plays every actor of the scene main. Waits for it.
 [[nodiscard]] Status play_all(const commands::Services& services);
 

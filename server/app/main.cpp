@@ -1,6 +1,7 @@
 #include <variant>
 
 #include "server/app/doctor.hpp"
+#include "server/app/inspect.hpp"
 #include "server/app/options.hpp"
 #include "server/app/serve.hpp"
 
@@ -12,6 +13,7 @@ struct Run {
   int operator()(int exit_code) const { return exit_code; }
   int operator()(const ServeOptions& options) const { return serve(options); }
   int operator()(const OfflineOptions& options) const { return render_offline(options); }
+  int operator()(const InspectOptions& options) const { return inspect(options); }
   int operator()(const DoctorOptions&) const { return doctor(); }
 };
 

@@ -56,6 +56,11 @@ void add_limit_options(CLI::App& serve, ServeOptions& o) {
   add("--max-scenes", l.scenes, "Scenes");
   add("--max-actors", l.actors_per_scene, "Actors a scene");
   add("--max-vertices", l.vertices_per_actor, "Vertices an actor");
+  add("--max-triangles", l.triangles_per_actor, "Triangles an actor");
+  add("--max-joints", l.joints_per_actor, "Joints an actor");
+  add("--max-morph-targets", l.morph_targets_per_actor, "Morph targets an actor");
+  add("--max-morphed-vertices", l.morphed_vertices, "Vertices of an actor's morph targets together");
+  add("--max-keyed-values", l.keyed_values, "Keyed values of an asset's clips together");
   add("--max-clips", l.clips_per_actor, "Clips an actor");
   add("--max-keyframes", l.keyframes_per_clip, "Keyframes a clip");
   add("--max-markers", l.markers_per_clip, "Markers a clip");
@@ -98,6 +103,7 @@ void add_view_options(CLI::App& render, OfflineOptions& o) {
 }
 
 void add_clip_options(CLI::App& render, OfflineOptions& o) {
+  render.add_option("--clip", o.clip, "Which clip to show; by default the first")->type_name("NAME");
   render.add_option("--fps", o.fps, "Frames a second of a sequence")
       ->type_name("N")
       ->capture_default_str()
@@ -121,7 +127,7 @@ void add_clip_options(CLI::App& render, OfflineOptions& o) {
 }
 
 void add_offline_options(CLI::App& render, OfflineOptions& o) {
-  render.add_option("ASSET", o.assets, "OBJ files and sequences' folders; several stand side by side")->required();
+  render.add_option("ASSET", o.assets, "glTF and OBJ files and sequences' folders; several stand side by side")->required();
   add_list(render, "--at", {.form = "T[,T...]"}, "Media times, seconds; a picture for each",
            [&o](const std::vector<double>& n) { o.times_s = n; })
       ->default_str("0");
@@ -171,6 +177,9 @@ CommandLine parse_command_line(int argc, char** argv) {
   OfflineOptions offline_options;
   CLI::App& render = *app.add_subcommand("render", "Draw assets to picture files, without a server");
   add_offline_options(render, offline_options);
+  InspectOptions inspect_options;
+  CLI::App& inspect = *app.add_subcommand("inspect", "What a file holds that can be an asset, and what is wrong with it");
+  inspect.add_option("FILE", inspect_options.path, "A .glb, .gltf or .obj file, or a sequence's folder")->required();
   const CLI::App& doctor = *app.add_subcommand("doctor", "Which devices there are to draw with, and why one was not taken");
   try {
     app.parse(argc, argv);
@@ -181,6 +190,7 @@ CommandLine parse_command_line(int argc, char** argv) {
   }
   if (serve.parsed()) return serve_options;
   if (render.parsed()) return offline_options;
+  if (inspect.parsed()) return inspect_options;
   if (doctor.parsed()) return DoctorOptions{};
   if (list_commands) {
     print_commands();

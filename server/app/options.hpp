@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/render_thread.hpp"
+#include "server/app/inspect.hpp"
 #include "server/app/render_offline.hpp"
 #include "server/base/limits.hpp"
 #include "server/net/network.hpp"
@@ -30,7 +31,7 @@ struct ServeOptions {
 struct DoctorOptions {};
 
 /// What the command line asked for; an int: to end at once with this code (help, version, a mistake).
-using CommandLine = std::variant<int, ServeOptions, OfflineOptions, DoctorOptions>;
+using CommandLine = std::variant<int, ServeOptions, OfflineOptions, InspectOptions, DoctorOptions>;
 
 /// Reads the command line; prints help, version, the methods or what was wrong.
 [[nodiscard]] CommandLine parse_command_line(int argc, char** argv);

@@ -17,10 +17,12 @@
 
 #include "protocol/type_info.hpp"
 #include "render/image_encoder.hpp"
+#include "server/app/asset_path.hpp"
 #include "server/app/contact_sheet.hpp"
 #include "server/app/engine.hpp"
 #include "server/app/loader.hpp"
 #include "server/app/numbered_name.hpp"
+#include "server/assets/asset_name.hpp"
 #include "server/base/clock.hpp"
 #include "server/base/progress_bar.hpp"
 #include "server/streams/still.hpp"
@@ -34,22 +36,6 @@ std::string json_string(std::string_view text) {
   std::string json;
   protocol::append_json_string(text, json);
   return json;
-}
-
-/// An asset by its path: the folder it lies in is an assets folder, the rest its name.
-struct Source {
-  std::string folder;
-  std::string name;
-};
-
-Result<Source> locate(const std::string& path) {
-  std::error_code error;
-  const fs::path whole = fs::canonical(path, error);
-  if (error || !whole.has_filename()) {
-    return fail(ErrorCode::NotFound,
-                fmt::format("expected a file or a folder at {}, found: {}", path, error ? error.message() : "the root folder"));
-  }
-  return Source{whole.parent_path().string(), whole.filename().string()};
 }
 
 /// Where to look from, at all that is shown.
@@ -137,7 +123,7 @@ class Offline {
     return engine_.start();
   }
 
-  Status set_scene(const std::vector<Source>& sources) {
+  Status set_scene(const std::vector<AssetPath>& sources) {
     for (std::size_t i = 0; i < sources.size(); ++i) TWEEND_TRY(add_actor(sources[i], i));
     std::string look;
     if (o_.background) look = fmt::format(R"(,"background":{})", json(*o_.background));
@@ -183,16 +169,18 @@ class Offline {
   }
 
   /// Beside the ones before it.
-  Status add_actor(const Source& source, std::size_t index) {
+  Status add_actor(const AssetPath& source, std::size_t index) {
     const std::string name = fmt::format("{}_{}", actor_name(source.name).substr(0, 50), index + 1);
-    std::string json = fmt::format(R"({{"actor":{},"asset":{},"fps":{},"closed":{})", json_string(name),
-                                   json_string(source.name), o_.fps, o_.closed);
-    if (o_.duration_s > 0.0) json += fmt::format(R"(,"duration":{})", o_.duration_s);
+    std::string json = fmt::format(R"({{"actor":{},"asset":{})", json_string(name), json_string(source.name));
+    // A glTF file says when its frames are.
+    if (!assets::is_gltf_name(source.name)) json += fmt::format(R"(,"fps":{},"closed":{})", o_.fps, o_.closed);
+    if (!assets::is_gltf_name(source.name) && o_.duration_s > 0.0) json += fmt::format(R"(,"duration":{})", o_.duration_s);
     if (!o_.interpolation.empty()) {
       json +=
           fmt::format(R"(,"interpolation":{})", json_string(o_.interpolation[std::min(index, o_.interpolation.size() - 1)]));
     }
     TWEEND_TRY(run_edit(engine_.services(), "actor.add", json + "}"));
+    if (!o_.clip.empty()) TWEEND_TRY(show_clip(engine_.services(), name, o_.clip));
     model::Scene alone;
     alone.actors = {scene()->find_actor(name)};
     const model::Bounds own = model::visible_bounds(alone).value_or(model::Bounds{});
@@ -242,11 +230,11 @@ Status run(const OfflineOptions& options) {
                 fmt::format("expected at most one --interpolation for each of {} asset{}, found {}", options.assets.size(),
                             options.assets.size() == 1 ? "" : "s", options.interpolation.size()));
   }
-  std::vector<Source> sources;
+  std::vector<AssetPath> sources;
   std::vector<std::string> folders;
   for (const std::string& path : options.assets) {
-    TWEEND_ASSIGN(Source source, locate(path));
-    for (const Source& other : sources) {
+    TWEEND_ASSIGN(AssetPath source, locate_asset(path));
+    for (const AssetPath& other : sources) {
       if (other.name == source.name && other.folder != source.folder) {
         return fail(ErrorCode::InvalidParams,
                     fmt::format("expected assets of different names, found {0}/{2} and {1}/{2}; rename one", other.folder,

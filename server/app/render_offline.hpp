@@ -19,7 +19,8 @@ struct OfflineOptions {
   std::string output = "frame-%04d.png";  ///< `%d`, `%04d`: the picture's number, from 0
   bool sheet = false;                     ///< all pictures in one, left to right, top to bottom
   render::Size size{1280, 720};
-  double fps = 24.0;
+  std::string clip;   ///< which one to show, of every asset; empty: the first
+  double fps = 24.0;  ///< of OBJ sequences, as are the next two
   bool closed = false;
   double duration_s = 0.0;                       ///< 0: as the keyframes say
   std::array<float, 2> orbit_deg{30.0F, 20.0F};  ///< azimuth from +Z towards +X, elevation; fitted to what is seen

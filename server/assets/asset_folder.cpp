@@ -23,6 +23,8 @@ AssetFolder sort_entries(std::string_view name, std::vector<AssetEntry> entries)
       folder.members.push_back({join_name(name, entry.name), std::move(member->prefix), member->frame, entry.bytes});
     } else if (has_extension(entry.name, ".obj")) {
       folder.objs.push_back(std::move(entry));
+    } else if (is_gltf_name(entry.name)) {
+      folder.gltfs.push_back(std::move(entry));
     }
   }
   return folder;

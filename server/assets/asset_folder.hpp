@@ -23,6 +23,7 @@ struct SequenceFile {
 struct AssetFolder {
   std::vector<SequenceFile> members;  ///< NAME_000000.obj; if there are any, the folder is a sequence
   std::vector<AssetEntry> objs;       ///< other .obj files
+  std::vector<AssetEntry> gltfs;      ///< .glb and .gltf files
   std::vector<AssetEntry> subfolders;
 };
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "server/assets/asset_name.hpp"
+#include "server/assets/gltf_reader.hpp"
 #include "server/assets/obj_materials.hpp"
 #include "server/assets/obj_reader.hpp"
 
@@ -15,7 +16,7 @@ namespace tweend::assets {
 namespace {
 
 constexpr int kMaxDepth = 16;
-constexpr std::string_view kExpected = "expected a .obj file or a folder of NAME_000000.obj files";
+constexpr std::string_view kExpected = "expected a .glb, .gltf or .obj file, or a folder of NAME_000000.obj files";
 
 using Found = std::map<std::string, AssetInfo, std::less<>>;
 
@@ -35,6 +36,9 @@ Status collect(const AssetRoot& root, const std::string& name, bool link, int de
   }
   if (link) return {};
   for (const AssetEntry& file : folder.objs) add(found, join_name(name, file.name), "obj", file.bytes);
+  for (const AssetEntry& file : folder.gltfs) {
+    add(found, join_name(name, file.name), has_extension(file.name, ".glb") ? "glb" : "gltf", file.bytes);
+  }
   if (depth == kMaxDepth) return {};
   for (const AssetEntry& subfolder : folder.subfolders) {
     // What can't be read, or went away meanwhile, must not hide everything else.
@@ -46,6 +50,10 @@ Status collect(const AssetRoot& root, const std::string& name, bool link, int de
 Error too_many_bytes(std::string_view name, std::size_t max_bytes) {
   return fail(ErrorCode::Limit,
               fmt::format("{}: expected at most {} bytes of files, found more", quoted_name(name), max_bytes));
+}
+
+Error no_memory(std::string_view name) {
+  return fail(ErrorCode::Unavailable, fmt::format("there is not enough memory to import {}", quoted_name(name)));
 }
 
 /// The one clip of an OBJ file or sequence, a keyframe for each file.
@@ -79,10 +87,24 @@ Result<const AssetRoot*> AssetLibrary::first_folder() const {
 }
 
 Result<model::ImportedModel> AssetLibrary::import(std::string_view name, const ImportOptions& options) const {
+  TWEEND_ASSIGN(const model::ModelBlob blob, import_blob(name, options));
   try {
-    return find_and_import(name, options);
+    auto imported = model::read_model_blob(blob.bytes);
+    if (!imported) return fail(imported.error().code, fmt::format("{}: {}", quoted_name(name), imported.error().message));
+    if (options.progress) options.progress(1.0);
+    return imported;
   } catch (const std::bad_alloc&) {
-    return fail(ErrorCode::Unavailable, fmt::format("there is not enough memory to import {}", quoted_name(name)));
+    return no_memory(name);
+  }
+}
+
+Result<model::ModelBlob> AssetLibrary::import_blob(std::string_view name, const ImportOptions& options) const {
+  try {
+    if (options.progress) options.progress(0.0);
+    TWEEND_ASSIGN(const model::ImportedModel imported, find_and_import(name, options));
+    return model::write_model_blob(imported);
+  } catch (const std::bad_alloc&) {
+    return no_memory(name);
   }
 }
 
@@ -108,12 +130,23 @@ Result<std::optional<model::ImportedModel>> AssetLibrary::import_from(const Asse
     TWEEND_ASSIGN(std::vector<AssetEntry> entries, root.list_folder(name));
     AssetFolder folder = sort_entries(name, std::move(entries));
     if (folder.members.empty()) return std::optional<model::ImportedModel>();
-    TWEEND_ASSIGN(ObjModel sequence, import_sequence(root, name, std::move(folder.members)));
+    TWEEND_ASSIGN(ObjModel sequence, import_sequence(root, name, std::move(folder.members), options.progress));
     return std::optional(imported(std::move(sequence), options));
+  }
+  if (is_gltf_name(name)) {
+    TWEEND_ASSIGN(model::ImportedModel model, import_gltf(root, name, options));
+    return std::optional(std::move(model));
   }
   if (!has_extension(name, ".obj")) return fail(ErrorCode::BadAsset, fmt::format("{}, found {}", kExpected, quoted_name(name)));
   TWEEND_ASSIGN(ObjModel model, import_file(root, name));
   return std::optional(imported(std::move(model), options));
+}
+
+Result<model::ImportedModel> AssetLibrary::import_gltf(const AssetRoot& root, std::string_view name,
+                                                       const ImportOptions& options) const {
+  TWEEND_ASSIGN(const std::string bytes, root.read_file(name, limits_.asset_bytes));
+  const auto read_side_file = [&root](std::string_view side, std::size_t most) { return root.read_file(side, most); };
+  return read_gltf(bytes, std::string(name), read_side_file, limits_.asset_bytes - bytes.size(), limits_, options.progress);
 }
 
 Result<ObjModel> AssetLibrary::import_file(const AssetRoot& root, std::string_view name) const {
@@ -123,8 +156,8 @@ Result<ObjModel> AssetLibrary::import_file(const AssetRoot& root, std::string_vi
   return build(root, name, {&file, 1}, {&kFrame, 1}, limits_.asset_bytes - text.size());
 }
 
-Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name,
-                                               std::vector<SequenceFile> members) const {
+Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::string_view name, std::vector<SequenceFile> members,
+                                               const ImportProgress& progress) const {
   TWEEND_ASSIGN(members, order_sequence(std::move(members)));
   if (total_bytes(members) > limits_.asset_bytes) return too_many_bytes(name, limits_.asset_bytes);
   if (members.size() > limits_.keyframes_per_clip) {
@@ -141,6 +174,7 @@ Result<ObjModel> AssetLibrary::import_sequence(const AssetRoot& root, std::strin
     TWEEND_ASSIGN(ObjFile file, read_obj(text, member.name, limits_));
     files.push_back(std::move(file));
     frames.push_back(member.frame);
+    if (progress) progress(static_cast<double>(files.size()) / static_cast<double>(members.size() + 1));
   }
   return build(root, name, files, frames, bytes_left);
 }

@@ -62,6 +62,8 @@ bool has_extension(std::string_view name, std::string_view extension) noexcept {
   return std::equal(end.begin(), end.end(), extension.begin(), [](char a, char b) { return lower(a) == b; });
 }
 
+bool is_gltf_name(std::string_view name) noexcept { return has_extension(name, ".glb") || has_extension(name, ".gltf"); }
+
 std::string join_name(std::string_view folder, std::string_view name) {
   std::string path(folder);
   if (!path.empty()) path += '/';

@@ -14,6 +14,9 @@ namespace tweend::assets {
 /// Whether `name` ends in `extension` (lower case, with its dot), in whatever case.
 [[nodiscard]] bool has_extension(std::string_view name, std::string_view extension) noexcept;
 
+/// Whether it is that of a glTF file: .glb or .gltf.
+[[nodiscard]] bool is_gltf_name(std::string_view name) noexcept;
+
 /// `folder`/`name`, or `name` where the folder is "" (the root).
 [[nodiscard]] std::string join_name(std::string_view folder, std::string_view name);
 

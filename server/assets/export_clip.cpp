@@ -77,7 +77,7 @@ ExportTrack side_by_side(const Tracks& weights, const std::vector<float>& others
 }
 
 /// Weights that are keyed apart: they have to share their times, so they are baked.
-Result<GltfSamples> merged(const Tracks& weights, const std::vector<float>& others, const ClipSpan& span,
+Result<GlbSamples> merged(const Tracks& weights, const std::vector<float>& others, const ClipSpan& span,
                            const BakeLimits& limits) {
   BakeSource source{others.size(), false, {}, {}};
   source.at = [&](double time_s, std::span<double> out) {
@@ -94,12 +94,12 @@ Result<GltfSamples> merged(const Tracks& weights, const std::vector<float>& othe
   return bake(source, limits);
 }
 
-Result<GltfSamples> weight_samples(const Tracks& weights, const std::vector<float>& others, const ClipSpan& span,
+Result<GlbSamples> weight_samples(const Tracks& weights, const std::vector<float>& others, const ClipSpan& span,
                                    const BakeLimits& limits) {
   const ExportTrack& first = weights.begin()->second;
   const bool alike = std::ranges::all_of(
       weights, [&](const auto& named) { return named.second.times_s == first.times_s && named.second.modes == first.modes; });
-  return alike ? gltf_samples(side_by_side(weights, others), span, limits) : merged(weights, others, span, limits);
+  return alike ? glb_samples(side_by_side(weights, others), span, limits) : merged(weights, others, span, limits);
 }
 
 /// Each keyframe's own target, and nothing else.
@@ -115,13 +115,13 @@ ExportTrack vertex_track(const model::Actor& actor, const model::Clip& clip, con
 }
 
 /// Keys the last value again at the clip's end, so that the animation is as long as the clip.
-void hold_until(double end_s, std::size_t width, GltfSamples& samples) {
+void hold_until(double end_s, std::size_t width, GlbSamples& samples) {
   const auto end = static_cast<float>(end_s);
   if (!(end > samples.times_s.back())) return;
   samples.times_s.push_back(end);
   std::vector<float>& values = samples.values;
   const auto last = values.end() - static_cast<std::ptrdiff_t>(width);
-  if (samples.blend != GltfBlend::CubicSpline) {
+  if (samples.blend != GlbBlend::CubicSpline) {
     const std::vector<float> held(last, values.end());
     values.insert(values.end(), held.begin(), held.end());
     return;
@@ -137,7 +137,7 @@ void hold_until(double end_s, std::size_t width, GltfSamples& samples) {
 /// The first animated value of all keeps the clip's length, where no other reaches its end.
 void keep_duration(double duration_s, std::size_t weights, ClipSamples& samples) {
   const auto end = static_cast<float>(duration_s);
-  const auto reaches = [end](const GltfSamples& s) { return !(s.times_s.back() < end); };
+  const auto reaches = [end](const GlbSamples& s) { return !(s.times_s.back() < end); };
   if (samples.weights && reaches(*samples.weights)) return;
   if (std::ranges::any_of(samples.joints, [&](const JointSamples& j) { return reaches(j.samples); })) return;
   if (!samples.joints.empty()) {
@@ -164,7 +164,7 @@ Status add_vertex_samples(const model::Actor& actor, const model::Clip& clip, co
   if (targets.size() == 0) return {};  // nothing ever leaves its place
   if (clip.keyframes.size() > limits.most_values / targets.size()) return too_much(clip, limits.most_values);
   limits.tolerance = kWeightTolerance;
-  TWEEND_ASSIGN(samples.weights, gltf_samples(vertex_track(actor, clip, targets), span, limits));
+  TWEEND_ASSIGN(samples.weights, glb_samples(vertex_track(actor, clip, targets), span, limits));
   return {};
 }
 
@@ -178,7 +178,7 @@ Status add_pose_samples(const model::Actor& actor, const model::Clip& clip, cons
       weights.emplace(channel, track);
       continue;
     }
-    TWEEND_ASSIGN(GltfSamples found, gltf_samples(track, span, limits));
+    TWEEND_ASSIGN(GlbSamples found, glb_samples(track, span, limits));
     samples.joints.push_back({channel.target, channel.property, std::move(found)});
     if (count_values(samples) > most_values) return too_much(clip, most_values);
   }

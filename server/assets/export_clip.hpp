@@ -16,13 +16,13 @@ namespace tweend::assets {
 struct JointSamples {
   std::size_t joint = 0;
   animation::Property property = animation::Property::Translation;
-  GltfSamples samples;
+  GlbSamples samples;
 };
 
 /// A clip by glTF's rules.
 struct ClipSamples {
   std::vector<JointSamples> joints;
-  std::optional<GltfSamples> weights;  ///< of all targets of the mesh; empty: none is moved
+  std::optional<GlbSamples> weights;  ///< of all targets of the mesh; empty: none is moved
 };
 
 /// All that a clip keys, each channel with its keys and the mode that is in force for them: the keyframe's, the imported

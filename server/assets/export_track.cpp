@@ -97,11 +97,11 @@ void append(std::vector<float>& out, std::span<const double> values) {
 
 /// The tangents of a Catmull-Rom spline are those of the chord from the key before to the key after; see
 /// animation::catmull_rom_weights for the ends of an open clip.
-GltfSamples catmull_rom(const ExportTrack& track, const ClipSpan& clip) {
+GlbSamples catmull_rom(const ExportTrack& track, const ClipSpan& clip) {
   const std::vector<CurveKey> keys = curve_keys(track, clip);
   const std::size_t first = clip.closed ? 1 : 0;
   const std::size_t count = track.times_s.size() + first;  // a closed clip's first key comes again
-  GltfSamples samples{GltfBlend::CubicSpline, {}, {}};
+  GlbSamples samples{GlbBlend::CubicSpline, {}, {}};
   std::vector<double> times;
   for (std::size_t k = first; k < first + count; ++k) {
     const bool begins = k == 0;
@@ -120,9 +120,9 @@ GltfSamples catmull_rom(const ExportTrack& track, const ClipSpan& clip) {
   return samples;
 }
 
-GltfSamples cubic(const ExportTrack& track, const ClipSpan& clip) {
+GlbSamples cubic(const ExportTrack& track, const ClipSpan& clip) {
   const std::vector<float> zero(track.width, 0.0F);
-  GltfSamples samples{GltfBlend::CubicSpline, {}, {}};
+  GlbSamples samples{GlbBlend::CubicSpline, {}, {}};
   const auto add_key = [&](std::size_t key) {
     const auto tangent = [&](const std::vector<float>& all) {
       return all.empty() ? std::span<const float>(zero) : std::span(all).subspan(key * track.width, track.width);
@@ -142,8 +142,8 @@ GltfSamples cubic(const ExportTrack& track, const ClipSpan& clip) {
 }
 
 /// Keys that are held, or blended along straight lines: a closed clip's ends are given what it shows there.
-GltfSamples plain(const ExportTrack& track, const ClipSpan& clip, GltfBlend blend) {
-  GltfSamples samples{blend, {}, track.values};
+GlbSamples plain(const ExportTrack& track, const ClipSpan& clip, GlbBlend blend) {
+  GlbSamples samples{blend, {}, track.values};
   std::vector<double> times = track.times_s;
   if (clip.closed) {
     std::vector<double> end(track.width);
@@ -183,16 +183,16 @@ void sample_export_track(const ExportTrack& track, const ClipSpan& clip, double 
   if (track.is_rotation) normalise(out);
 }
 
-Result<GltfSamples> gltf_samples(const ExportTrack& track, const ClipSpan& clip, const BakeLimits& limits) {
+Result<GlbSamples> glb_samples(const ExportTrack& track, const ClipSpan& clip, const BakeLimits& limits) {
   const std::optional<Interpolation> mode = only_mode(track, clip.closed);
   if (track.times_s.size() == 1) {
     // A spline needs two keys, and nothing blends with itself.
-    return GltfSamples{mode == Interpolation::Step ? GltfBlend::Step : GltfBlend::Linear, float_times(track.times_s),
+    return GlbSamples{mode == Interpolation::Step ? GlbBlend::Step : GlbBlend::Linear, float_times(track.times_s),
                        track.values};
   }
   const bool curve_crosses_end = clip.closed && track.times_s.front() > 0.0;
-  if (mode == Interpolation::Step) return plain(track, clip, GltfBlend::Step);
-  if (mode == Interpolation::Linear) return plain(track, clip, GltfBlend::Linear);
+  if (mode == Interpolation::Step) return plain(track, clip, GlbBlend::Step);
+  if (mode == Interpolation::Linear) return plain(track, clip, GlbBlend::Linear);
   if (mode == Interpolation::CatmullRom && !curve_crosses_end) return catmull_rom(track, clip);
   if (mode == Interpolation::Cubic && !curve_crosses_end) return cubic(track, clip);
 

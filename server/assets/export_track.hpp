@@ -27,11 +27,11 @@ struct ExportTrack {
 };
 
 /// glTF's ways to blend the keys of a sampler.
-enum class GltfBlend : std::uint8_t { Step, Linear, CubicSpline };
+enum class GlbBlend : std::uint8_t { Step, Linear, CubicSpline };
 
 /// A track as an animation sampler of glTF holds it.
-struct GltfSamples {
-  GltfBlend blend = GltfBlend::Linear;
+struct GlbSamples {
+  GlbBlend blend = GlbBlend::Linear;
   std::vector<float> times_s;  ///< strictly ascending
   std::vector<float> values;   ///< a CubicSpline's: in-tangent, value and out-tangent of each key
 };
@@ -57,6 +57,6 @@ void sample_export_track(const ExportTrack& track, const ClipSpan& clip, double 
 /// that change, easing, a curve that crosses the clip's end in the middle) is baked: a CUBICSPLINE with all the keys, and as
 /// many between as the tolerance asks. Pure.
 /// @return Limit where baking takes more than `limits.most_values`
-[[nodiscard]] Result<GltfSamples> gltf_samples(const ExportTrack& track, const ClipSpan& clip, const BakeLimits& limits = {});
+[[nodiscard]] Result<GlbSamples> glb_samples(const ExportTrack& track, const ClipSpan& clip, const BakeLimits& limits = {});
 
 }  // namespace tweend::assets

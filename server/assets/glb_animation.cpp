@@ -8,9 +8,9 @@
 namespace tweend::assets {
 namespace {
 
-const char* blend_name(GltfBlend blend) {
-  if (blend == GltfBlend::Step) return "STEP";
-  return blend == GltfBlend::Linear ? "LINEAR" : "CUBICSPLINE";
+const char* blend_name(GlbBlend blend) {
+  if (blend == GlbBlend::Step) return "STEP";
+  return blend == GlbBlend::Linear ? "LINEAR" : "CUBICSPLINE";
 }
 
 const char* path_name(animation::Property property) {
@@ -27,32 +27,32 @@ const char* path_name(animation::Property property) {
   return "";
 }
 
-GltfShape shape_of(animation::Property property) {
-  if (property == animation::Property::Weight) return GltfShape::Scalar;
-  return property == animation::Property::Rotation ? GltfShape::Vec4 : GltfShape::Vec3;
+GlbShape shape_of(animation::Property property) {
+  if (property == animation::Property::Weight) return GlbShape::Scalar;
+  return property == animation::Property::Rotation ? GlbShape::Vec4 : GlbShape::Vec3;
 }
 
 class AnimationWriter {
  public:
   explicit AnimationWriter(GlbDocument& document) : document_(document) {}
 
-  void add(const GltfSamples& samples, std::size_t node, animation::Property property) {
-    const std::size_t output = add_floats(document_, samples.values, shape_of(property), GltfUse::None, false);
+  void add(const GlbSamples& samples, std::size_t node, animation::Property property) {
+    const std::size_t output = add_floats(document_, samples.values, shape_of(property), GlbUse::None, false);
     animation_.samplers.push_back({times(samples.times_s), output, blend_name(samples.blend)});
     animation_.channels.push_back({animation_.samplers.size() - 1, node, path_name(property)});
   }
 
-  [[nodiscard]] GltfAnimation take() { return std::move(animation_); }
+  [[nodiscard]] GlbAnimation take() { return std::move(animation_); }
 
  private:
   std::size_t times(const std::vector<float>& times_s) {
     const auto known = times_.find(times_s);
     if (known != times_.end()) return known->second;
-    return times_.emplace(times_s, add_floats(document_, times_s, GltfShape::Scalar, GltfUse::None, true)).first->second;
+    return times_.emplace(times_s, add_floats(document_, times_s, GlbShape::Scalar, GlbUse::None, true)).first->second;
   }
 
   GlbDocument& document_;
-  GltfAnimation animation_;
+  GlbAnimation animation_;
   std::map<std::vector<float>, std::size_t> times_;
 };
 
@@ -63,7 +63,7 @@ void add_animation(const std::string& name, const ClipSamples& samples, std::siz
   AnimationWriter writer(document);
   for (const JointSamples& j : samples.joints) writer.add(j.samples, j.joint, j.property);
   if (samples.weights) writer.add(*samples.weights, mesh_node, animation::Property::Weight);
-  GltfAnimation animation = writer.take();
+  GlbAnimation animation = writer.take();
   animation.name = name;
   document.animations.push_back(std::move(animation));
 }

@@ -12,7 +12,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::string_view kUnlit = "KHR_materials_unlit";
 
-std::string_view shape_name(GltfShape shape) {
+std::string_view shape_name(GlbShape shape) {
   constexpr std::array<std::string_view, 5> kNames{"SCALAR", "VEC2", "VEC3", "VEC4", "MAT4"};
   return kNames[static_cast<std::size_t>(shape)];
 }
@@ -29,8 +29,8 @@ void add_list(const char* name, const std::vector<T>& list, const Make& make, Js
   for (const T& item : list) array.push_back(make(item));
 }
 
-Json node_json(const GltfNode& node) {
-  static const GltfNode rest;
+Json node_json(const GlbNode& node) {
+  static const GlbNode rest;
   Json json = Json::object();
   add_name(node.name, json);
   if (!node.children.empty()) json["children"] = node.children;
@@ -42,14 +42,14 @@ Json node_json(const GltfNode& node) {
   return json;
 }
 
-Json primitive_json(const GltfPrimitive& primitive) {
+Json primitive_json(const GlbPrimitive& primitive) {
   Json json;
   for (const auto& [name, accessor] : primitive.attributes) json["attributes"][name] = accessor;
   json["indices"] = primitive.indices;
   if (primitive.material) json["material"] = *primitive.material;
   add_list(
       "targets", primitive.targets,
-      [](const GltfMorph& morph) {
+      [](const GlbMorph& morph) {
         Json target{{"POSITION", morph.position}};
         if (morph.normal) target["NORMAL"] = *morph.normal;
         return target;
@@ -58,7 +58,7 @@ Json primitive_json(const GltfPrimitive& primitive) {
   return json;
 }
 
-Json mesh_json(const GltfMesh& mesh) {
+Json mesh_json(const GlbMesh& mesh) {
   Json json = Json::object();
   add_name(mesh.name, json);
   add_list("primitives", mesh.primitives, primitive_json, json);
@@ -69,20 +69,20 @@ Json mesh_json(const GltfMesh& mesh) {
   return json;
 }
 
-Json skin_json(const GltfSkin& skin) { return {{"inverseBindMatrices", skin.inverse_bind_matrices}, {"joints", skin.joints}}; }
+Json skin_json(const GlbSkin& skin) { return {{"inverseBindMatrices", skin.inverse_bind_matrices}, {"joints", skin.joints}}; }
 
-Json animation_json(const GltfAnimation& animation) {
+Json animation_json(const GlbAnimation& animation) {
   Json json = Json::object();
   add_name(animation.name, json);
   add_list(
       "channels", animation.channels,
-      [](const GltfChannel& c) {
+      [](const GlbChannel& c) {
         return Json{{"sampler", c.sampler}, {"target", {{"node", c.node}, {"path", c.path}}}};
       },
       json);
   add_list(
       "samplers", animation.samplers,
-      [](const GltfSampler& s) {
+      [](const GlbSampler& s) {
         return Json{{"input", s.input}, {"interpolation", s.interpolation}, {"output", s.output}};
       },
       json);
@@ -90,7 +90,7 @@ Json animation_json(const GltfAnimation& animation) {
 }
 
 /// Light is reflected as by a surface neither metallic nor quite smooth, from both sides: what is drawn here comes nearest.
-Json material_json(const GltfMaterial& material) {
+Json material_json(const GlbMaterial& material) {
   constexpr double kRoughness = 0.5;
   Json json = Json::object();
   add_name(material.name, json);
@@ -108,7 +108,7 @@ Json material_json(const GltfMaterial& material) {
   return json;
 }
 
-Json accessor_json(const GltfAccessor& accessor) {
+Json accessor_json(const GlbAccessor& accessor) {
   Json json = Json::object();
   if (accessor.view) json["bufferView"] = *accessor.view;
   json["componentType"] = static_cast<unsigned>(accessor.component);
@@ -121,9 +121,9 @@ Json accessor_json(const GltfAccessor& accessor) {
   return json;
 }
 
-Json view_json(const GltfBufferView& view) {
+Json view_json(const GlbBufferView& view) {
   Json json{{"buffer", 0}, {"byteOffset", view.offset}, {"byteLength", view.bytes}};
-  if (view.use != GltfUse::None) json["target"] = static_cast<unsigned>(view.use);
+  if (view.use != GlbUse::None) json["target"] = static_cast<unsigned>(view.use);
   return json;
 }
 
@@ -131,14 +131,14 @@ Json view_json(const GltfBufferView& view) {
 void add_textures(const GlbDocument& document, Json& json) {
   add_list(
       "samplers", document.textures,
-      [](const GltfTexture& t) {
+      [](const GlbTexture& t) {
         return Json{{"wrapS", t.wrap_s}, {"wrapT", t.wrap_t}};
       },
       json);
   std::size_t sampler = 0;
   add_list(
       "textures", document.textures,
-      [&](const GltfTexture& t) {
+      [&](const GlbTexture& t) {
         return Json{{"sampler", sampler++}, {"source", t.image}};
       },
       json);
@@ -153,7 +153,7 @@ void add_textures(const GlbDocument& document, Json& json) {
 std::string document_json(const GlbDocument& document, std::size_t buffer_bytes) {
   Json json;
   json["asset"] = {{"version", "2.0"}, {"generator", "tweend " TWEEND_VERSION}};
-  for (const GltfMaterial& material : document.materials) {
+  for (const GlbMaterial& material : document.materials) {
     if (material.unlit) json["extensionsUsed"] = Json::array({kUnlit});
   }
   json["scene"] = 0;

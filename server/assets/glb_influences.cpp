@@ -44,7 +44,7 @@ Influences influences_of(const animation::SkinInfluences& skin, std::size_t vert
 
 }  // namespace
 
-void add_influences(const model::Skin& skin, std::span<const std::uint32_t> vertices, GltfPrimitive& primitive,
+void add_influences(const model::Skin& skin, std::span<const std::uint32_t> vertices, GlbPrimitive& primitive,
                     GlbDocument& document) {
   const animation::SkinInfluences all = skin.influences();
   const std::size_t sets = (all.per_vertex + kSetInfluences - 1) / kSetInfluences;
@@ -61,7 +61,7 @@ void add_influences(const model::Skin& skin, std::span<const std::uint32_t> vert
   for (std::size_t set = 0; set < sets; ++set) {
     primitive.attributes.emplace_back(fmt::format("JOINTS_{}", set), add_joints(document, joints[set]));
     primitive.attributes.emplace_back(fmt::format("WEIGHTS_{}", set),
-                                      add_floats(document, weights[set], GltfShape::Vec4, GltfUse::Vertices, false));
+                                      add_floats(document, weights[set], GlbShape::Vec4, GlbUse::Vertices, false));
   }
 }
 

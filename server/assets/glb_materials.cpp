@@ -33,7 +33,7 @@ class MaterialWriter {
   explicit MaterialWriter(GlbDocument& document) : document_(document) {}
 
   Result<std::size_t> add(const model::Material& material, bool has_texcoords) {
-    GltfMaterial out{.name = material.name};
+    GlbMaterial out{.name = material.name};
     const glm::vec3& color = material.base_color;
     out.base_color = {linear_of(color.x), linear_of(color.y), linear_of(color.z), material.alpha};
     out.alpha_cutoff = material.alpha_cutoff;
@@ -51,7 +51,7 @@ class MaterialWriter {
   Result<std::size_t> add_image(const model::Image& image) {
     if (const auto known = images_.find(image.hash()); known != images_.end()) return known->second;
     TWEEND_ASSIGN(const std::string png, write_png(image));
-    document_.png_images.push_back(add_view(document_, std::as_bytes(std::span(png)), GltfUse::None));
+    document_.png_images.push_back(add_view(document_, std::as_bytes(std::span(png)), GlbUse::None));
     images_.emplace(image.hash(), document_.png_images.size() - 1);
     return document_.png_images.size() - 1;
   }

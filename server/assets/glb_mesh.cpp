@@ -77,7 +77,7 @@ class MeshWriter {
   Result<std::size_t> write(const std::string& name, bool skinned, std::size_t most_bytes) {
     TWEEND_TRY(check_size(most_bytes));
     TWEEND_ASSIGN(const std::vector<std::size_t> materials, add_materials(*model_.mesh, document_));
-    GltfMesh mesh{name, {}, targets_.default_weights(), targets_.names()};
+    GlbMesh mesh{name, {}, targets_.default_weights(), targets_.names()};
     for (const Piece& piece : pieces_) mesh.primitives.push_back(primitive(piece, materials[piece.material], skinned));
     for (std::size_t t = 0; t < targets_.size(); ++t) TWEEND_TRY(add_target(t, mesh));
     document_.meshes.push_back(std::move(mesh));
@@ -98,32 +98,32 @@ class MeshWriter {
                             most_bytes, vertices, targets_.size(), bytes));
   }
 
-  GltfPrimitive primitive(const Piece& piece, std::size_t material, bool skinned) {
+  GlbPrimitive primitive(const Piece& piece, std::size_t material, bool skinned) {
     const model::Mesh& mesh = *model_.mesh;
-    GltfPrimitive primitive{.attributes = {}, .indices = 0, .material = material};
-    const auto add = [&](const char* name, std::span<const float> values, GltfShape shape) {
+    GlbPrimitive primitive{.attributes = {}, .indices = 0, .material = material};
+    const auto add = [&](const char* name, std::span<const float> values, GlbShape shape) {
       const bool bounds = std::string_view(name) == "POSITION";
-      primitive.attributes.emplace_back(name, add_floats(document_, values, shape, GltfUse::Vertices, bounds));
+      primitive.attributes.emplace_back(name, add_floats(document_, values, shape, GlbUse::Vertices, bounds));
     };
-    add("POSITION", gathered(model_.rest->positions(), 3, piece.vertices), GltfShape::Vec3);
+    add("POSITION", gathered(model_.rest->positions(), 3, piece.vertices), GlbShape::Vec3);
     std::vector<float> normals = gathered(model_.rest->normals(), 3, piece.vertices);
     make_unit(normals);
-    add("NORMAL", normals, GltfShape::Vec3);
+    add("NORMAL", normals, GlbShape::Vec3);
     if (!mesh.texcoords().empty()) {
       std::vector<float> uv = gathered(mesh.texcoords(), 2, piece.vertices);
       for (std::size_t i = 1; i < uv.size(); i += 2) uv[i] = 1.0F - uv[i];  // glTF's v goes down
-      add("TEXCOORD_0", uv, GltfShape::Vec2);
+      add("TEXCOORD_0", uv, GlbShape::Vec2);
     }
-    if (!mesh.colors().empty()) add("COLOR_0", gathered(mesh.colors(), 4, piece.vertices), GltfShape::Vec4);
+    if (!mesh.colors().empty()) add("COLOR_0", gathered(mesh.colors(), 4, piece.vertices), GlbShape::Vec4);
     if (skinned) add_influences(*model_.skin, piece.vertices, primitive, document_);
     primitive.indices = add_indices(document_, piece.indices);
     return primitive;
   }
 
-  [[nodiscard]] Status add_target(std::size_t target, GltfMesh& mesh) {
+  [[nodiscard]] Status add_target(std::size_t target, GlbMesh& mesh) {
     TWEEND_ASSIGN(const Displacements moved, targets_.displacements(target));
     for (std::size_t p = 0; p < pieces_.size(); ++p) {
-      GltfMorph morph{add_displacements(moved.positions, moved.first_vertex, pieces_[p])};
+      GlbMorph morph{add_displacements(moved.positions, moved.first_vertex, pieces_[p])};
       if (targets_.has_normals()) morph.normal = add_displacements(moved.normals, moved.first_vertex, pieces_[p]);
       mesh.primitives[p].targets.push_back(morph);
     }
@@ -142,7 +142,7 @@ class MeshWriter {
       }
     }
     if (!moves) return add_zeros(document_, piece.vertices.size());
-    return add_floats(document_, all, GltfShape::Vec3, GltfUse::Vertices, true);
+    return add_floats(document_, all, GlbShape::Vec3, GlbUse::Vertices, true);
   }
 
   const model::Model& model_;

@@ -13,12 +13,12 @@
 namespace tweend::assets {
 namespace {
 
-GltfNode node_of(const model::Joint& joint, std::string name) {
+GlbNode node_of(const model::Joint& joint, std::string name) {
   // Once more to unit length: readers are strict, and this costs nothing.
   const glm::dquat q = glm::normalize(glm::dquat(joint.rest.rotation));
   const glm::vec3& t = joint.rest.translation;
   const glm::vec3& s = joint.rest.scale;
-  GltfNode node;
+  GlbNode node;
   node.name = std::move(name);
   node.translation = {t.x, t.y, t.z};
   node.rotation = {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z), static_cast<float>(q.w)};
@@ -70,7 +70,7 @@ class RigWriter {
   }
 
  private:
-  std::size_t add_node(GltfNode node) {
+  std::size_t add_node(GlbNode node) {
     document_.nodes.push_back(std::move(node));
     return document_.nodes.size() - 1;
   }
@@ -108,7 +108,7 @@ class RigWriter {
   }
 
   std::size_t add_skin() {
-    GltfSkin skin;
+    GlbSkin skin;
     std::vector<float> matrices;
     std::vector<bool> used(model_.joint_count(), false);
     for (const model::SkinEntry& entry : model_.skin->entries()) {
@@ -118,7 +118,7 @@ class RigWriter {
         for (int r = 0; r < 4; ++r) matrices.push_back(columns[c][r]);
       }
     }
-    skin.inverse_bind_matrices = add_floats(document_, matrices, GltfShape::Mat4, GltfUse::None, false);
+    skin.inverse_bind_matrices = add_floats(document_, matrices, GlbShape::Mat4, GlbUse::None, false);
     document_.skins.push_back(std::move(skin));
     return document_.skins.size() - 1;
   }

@@ -50,7 +50,7 @@ class Baker {
  public:
   Baker(const BakeSource& source, const BakeLimits& limits) : source_(source), limits_(limits) {}
 
-  Result<GltfSamples> bake() {
+  Result<GlbSamples> bake() {
     const std::vector<double>& times = source_.times_s;
     add_key(times.front(), at(times.front(), {}));
     for (std::size_t i = 0; i + 1 < times.size(); ++i) {
@@ -138,11 +138,11 @@ class Baker {
     });
   }
 
-  [[nodiscard]] GltfSamples samples() const {
+  [[nodiscard]] GlbSamples samples() const {
     std::vector<double> times;
     for (const Key& key : keys_) times.push_back(key.time_s);
     // A spline needs two keys.
-    GltfSamples samples{keys_.size() > 1 ? GltfBlend::CubicSpline : GltfBlend::Linear, float_times(times), {}};
+    GlbSamples samples{keys_.size() > 1 ? GlbBlend::CubicSpline : GlbBlend::Linear, float_times(times), {}};
     const auto append = [&](const Value& value) {
       for (const double v : value) samples.values.push_back(static_cast<float>(v));
     };
@@ -161,7 +161,7 @@ class Baker {
 
 }  // namespace
 
-Result<GltfSamples> bake(const BakeSource& source, const BakeLimits& limits) { return Baker(source, limits).bake(); }
+Result<GlbSamples> bake(const BakeSource& source, const BakeLimits& limits) { return Baker(source, limits).bake(); }
 
 std::vector<float> float_times(std::span<const double> times_s) {
   std::vector<float> times;

@@ -25,7 +25,7 @@ inline constexpr double kJumpSeconds = 2e-6;
 /// Cubic pieces (a CUBICSPLINE) that follow the source as near as `limits` ask, between its times as many as it takes: halves,
 /// and their halves, down to a 16,384th. Pieces of the fourth order need a fiftieth of the keys that straight ones would. Pure.
 /// @return Limit where they are more than `limits.most_values` numbers
-[[nodiscard]] Result<GltfSamples> bake(const BakeSource& source, const BakeLimits& limits);
+[[nodiscard]] Result<GlbSamples> bake(const BakeSource& source, const BakeLimits& limits);
 
 /// Numbers as floats, ascending as they were, however near they are.
 [[nodiscard]] std::vector<float> float_times(std::span<const double> times_s);

@@ -15,7 +15,11 @@ struct Limits {
   std::size_t scenes = 256;
   std::size_t actors_per_scene = 1'024;
   std::size_t vertices_per_actor = 4'000'000;
+  std::size_t triangles_per_actor = 8'000'000;
   std::size_t joints_per_actor = 4'096;
+  std::size_t morph_targets_per_actor = 4'096;
+  std::size_t morphed_vertices = 16'000'000;  ///< those of an actor's morph targets, counted once for each target
+  std::size_t keyed_values = 16'000'000;      ///< of one asset's clips together
   std::size_t keyframes_per_clip = 100'000;
   std::size_t clips_per_actor = 1'024;
   std::size_t markers_per_clip = 10'000;

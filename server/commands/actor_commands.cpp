@@ -112,18 +112,33 @@ struct ActorRemoveParams : EditTarget {
   }
 };
 
-Result<model::ImportedModel> import_asset(const ActorAddParams& p, const Services& services) {
-  auto imported = services.assets.import(*p.asset, {p.fps.value_or(24.0)});
-  if (!imported) return fail(imported.error().code, imported.error().message, "params.asset");
-  for (const std::string& warning : imported->warnings) log::warn(warning);
-  return imported;
+/// Tells the scene's subscribers how far an import is: its beginning and its end, and what comes between now and then.
+assets::ImportProgress tell_progress(const ActorAddParams& p, const Services& services) {
+  constexpr ClockUs kEveryUs = 100'000;
+  return [&p, &services, next_us = ClockUs{0}](double fraction) mutable {
+    const ClockUs now_us = steady_now_us();
+    if (now_us < next_us && fraction < 1.0) return;
+    next_us = now_us + kEveryUs;
+    services.events.importing(scene_or_main(p.scene), p.actor.text, *p.asset, fraction);
+  };
 }
 
-/// One clip without keyframes, for what brings none.
-std::vector<model::Clip> empty_clip() {
-  model::Clip clip;
-  clip.name = "default";
-  return {std::move(clip)};
+/// A glTF file says itself when its clips end; its model is the one that has a skeleton.
+Status check_clip_fields(const ActorAddParams& p, const model::ImportedModel& imported) {
+  if (!imported.model->skeleton) return {};
+  const char* const given = p.fps ? "fps" : p.closed ? "closed" : p.duration ? "duration" : nullptr;
+  if (given == nullptr) return {};
+  return fail(ErrorCode::InvalidParams,
+              fmt::format("expected {} with an OBJ file or sequence only, found it with a glTF file", given),
+              fmt::format("params.{}", given));
+}
+
+Result<model::ImportedModel> import_asset(const ActorAddParams& p, const Services& services) {
+  auto imported = services.assets.import(*p.asset, {p.fps.value_or(24.0), tell_progress(p, services)});
+  if (!imported) return fail(imported.error().code, imported.error().message, "params.asset");
+  TWEEND_TRY(check_clip_fields(p, *imported));
+  for (const std::string& warning : imported->warnings) log::warn(warning);
+  return imported;
 }
 
 Result<model::ImportedModel> make_mesh(const MeshParams& p, const Services& services) {
@@ -144,13 +159,13 @@ Result<model::ImportedModel> make_mesh(const MeshParams& p, const Services& serv
       model::VertexKey::make(**mesh, p.positions, p.normals ? std::span<const float>(*p.normals) : std::span<const float>());
   if (!rest) return fail(rest.error().code, rest.error().message, "params.mesh." + rest.error().path);
   auto model = std::make_shared<const model::Model>(model::Model{*mesh, *rest, {}, {}, {}});
-  return model::ImportedModel{"mesh", std::move(model), empty_clip(), {}};
+  return model::ImportedModel{"mesh", std::move(model), model::empty_clips(), {}};
 }
 
 Result<model::ImportedModel> make_bare_skeleton(const SkeletonParams& p, const Services& services) {
   TWEEND_ASSIGN(model::SkeletonPtr skeleton, make_skeleton(p, services.limits));
   auto model = std::make_shared<const model::Model>(model::Model{{}, {}, std::move(skeleton), {}, {}});
-  return model::ImportedModel{"skeleton", std::move(model), empty_clip(), {}};
+  return model::ImportedModel{"skeleton", std::move(model), model::empty_clips(), {}};
 }
 
 Result<model::ImportedModel> make_source(const ActorAddParams& p, const Services& services) {

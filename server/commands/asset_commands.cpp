@@ -15,8 +15,8 @@ struct AssetEntry {
   std::uint64_t bytes = 0;
   static void describe(FieldList<AssetEntry>& f) {
     f.add<&AssetEntry::name>("name", "Its path under the assets folder.");
-    f.add<&AssetEntry::type>("type", "obj or obj_sequence.");
-    f.add<&AssetEntry::bytes>("bytes", "Size of its .obj files.");
+    f.add<&AssetEntry::type>("type", "glb, gltf, obj or obj_sequence.");
+    f.add<&AssetEntry::bytes>("bytes", "Size of the file; of a sequence, its .obj files together.");
   }
 };
 

@@ -51,6 +51,19 @@ struct SceneChanged {
   }
 };
 
+struct AssetProgress {
+  static constexpr std::string_view kName = "AssetProgress";
+  std::string scene, actor, asset;
+  double fraction = 0.0;
+  static void describe(FieldList<AssetProgress>& f) {
+    using T = AssetProgress;
+    f.add<&T::scene>("scene", "Its name.");
+    f.add<&T::actor>("actor", "The actor that is to be.");
+    f.add<&T::asset>("asset", "What is read for it.");
+    f.add<&T::fraction>("fraction", "How much of it is done, 0 to 1.");
+  }
+};
+
 struct MarkerCrossed {
   static constexpr std::string_view kName = "MarkerCrossed";
   std::string scene, actor, clip;
@@ -138,6 +151,10 @@ void EventHub::tell_all(std::string scene, Texts texts, Order order) {
       }
     }
   });
+}
+
+void EventHub::importing(const std::string& scene, const std::string& actor, const std::string& asset, double fraction) {
+  tell(scene, notification("asset.progress", AssetProgress{scene, actor, asset, fraction}), Order::AtOnce);
 }
 
 void EventHub::published(const std::string& scene, const stage::SceneViewPtr& view) { hub_.follow(scene, view); }

@@ -28,6 +28,10 @@ class EventHub final : public stage::StageListener {
   /// Whether anybody listens, if that has changed since it was asked last: for Stage::set_audience().
   [[nodiscard]] std::optional<bool> audience_change();
 
+  // Any thread:
+  /// How much of an asset has been read that a new actor is to show, 0 to 1.
+  void importing(const std::string& scene, const std::string& actor, const std::string& asset, double fraction);
+
   // Strand (StageListener):
   void published(const std::string& scene, const stage::SceneViewPtr& view) override;
   void edited(const stage::EditEvent& event) override;

@@ -85,4 +85,10 @@ std::size_t Clip::place_of(double time_s) const noexcept {
   return static_cast<std::size_t>(std::lower_bound(times_s.begin(), times_s.end(), time_s) - times_s.begin());
 }
 
+std::vector<Clip> empty_clips() {
+  std::vector<Clip> clips(1);
+  clips.front().name = "default";
+  return clips;
+}
+
 }  // namespace tweend::model

@@ -95,4 +95,7 @@ struct Clip {
 
 using ClipPtr = std::shared_ptr<const Clip>;
 
+/// One clip without keyframes, `default`: what an actor starts with that brings none.
+[[nodiscard]] std::vector<Clip> empty_clips();
+
 }  // namespace tweend::model

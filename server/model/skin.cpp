@@ -11,6 +11,8 @@
 namespace tweend::model {
 namespace {
 
+constexpr float kRounding = 1e-6F;
+
 Status check_lengths(std::size_t entries, std::size_t per_vertex, std::size_t joints, std::size_t weights,
                      std::size_t vertices) {
   if (entries == 0 || entries > 65'536) {
@@ -37,7 +39,8 @@ Status settle(std::span<const std::uint16_t> joints, std::span<float> weights, s
     }
     sum += weights[i];
   }
-  if (sum == 1.0F) return {};
+  // As near to 1 as rounding leaves it: weights that were scaled once stay what they are.
+  if (std::abs(sum - 1.0F) <= kRounding) return {};
   if (sum <= 0.0F || !std::isfinite(sum)) {
     for (float& w : weights) w = 0.0F;
     weights[0] = 1.0F;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "server/animation/vertex_normals.hpp"
 #include "server/animation/vertex_tangents.hpp"
@@ -80,6 +81,21 @@ Result<VertexKeyPtr> VertexKey::make(const Mesh& mesh, std::span<const float> po
     TWEEND_TRY(animation::compute_tangents(positions, own_normals, mesh.texcoords(), mesh.indices(), block.subspan(6 * count)));
   }
   key->bounds_ = bounds_of(positions);
+  key->hash_ = hash_bytes(std::as_bytes(std::span(key->block_)));
+  return VertexKeyPtr(key);
+}
+
+Result<VertexKeyPtr> VertexKey::from_block(const Mesh& mesh, std::vector<float> block) {
+  const std::size_t expected = (mesh.texcoords().empty() ? 6 : 9) * mesh.vertex_count();
+  const bool finite = std::all_of(block.begin(), block.end(), [](float v) { return std::isfinite(v); });
+  if (block.size() != expected || !finite) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected {} finite numbers for {} vertices, found {}", expected,
+                                                      mesh.vertex_count(), finite ? std::to_string(block.size()) : "others"));
+  }
+  const std::shared_ptr<VertexKey> key(new VertexKey);
+  key->vertex_count_ = mesh.vertex_count();
+  key->block_ = std::move(block);
+  key->bounds_ = bounds_of(key->positions());
   key->hash_ = hash_bytes(std::as_bytes(std::span(key->block_)));
   return VertexKeyPtr(key);
 }

@@ -26,6 +26,11 @@ class VertexKey {
   [[nodiscard]] static Result<std::shared_ptr<const VertexKey>> make(const Mesh& mesh, std::span<const float> positions,
                                                                      std::span<const float> normals = {});
 
+  /// One that block() was taken from: the same numbers, the same hash.
+  /// @param block  finite; shape [vertex_count × 9] for a mesh with texture coordinates, else [vertex_count × 6]
+  /// @return InvalidParams for another length, or a number that is not finite
+  [[nodiscard]] static Result<std::shared_ptr<const VertexKey>> from_block(const Mesh& mesh, std::vector<float> block);
+
   [[nodiscard]] std::size_t vertex_count() const noexcept { return vertex_count_; }
   [[nodiscard]] std::span<const float> positions() const noexcept;
   [[nodiscard]] std::span<const float> normals() const noexcept;

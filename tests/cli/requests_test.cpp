@@ -140,7 +140,38 @@ INSTANTIATE_TEST_SUITE_P(
                          "playback.set",
                          R"({"range":[0.5,2],"loop":"once","speed":2})",
                          {}},
-                    Case{{"status"}, "playback.get", "{}", {}}));
+                    Case{{"status"}, "playback.get", "{}", {}},
+                    Case{{"play", "--clip", "c", "--fade", "0.5", "--at", "123456789", "--late", "error"},
+                         "playback.play",
+                         R"({"clip":"c","fade":0.5,"at_us":123456789,"late":"error"})",
+                         {}},
+                    Case{{"queue", "walk:3", "idle:1:0.4", "stand", "--actor", "a", "--at", "5"},
+                         "playback.queue",
+                         R"({"actor":"a","at_us":5,"clips":[{"clip":"walk","repeat":3},
+                             {"clip":"idle","repeat":1,"fade":0.4},{"clip":"stand"}]})",
+                         {}},
+                    Case{{"queue", "walk", "--loop", "ping_pong"},
+                         "playback.queue",
+                         R"({"clips":[{"clip":"walk","loop":"ping_pong"}]})",
+                         {}}));
+
+INSTANTIATE_TEST_SUITE_P(
+    MarkersLayersSchedules, Requests,
+    testing::Values(Case{{"marker", "add", "0.5", "step", "--clip", "walk"},
+                         "marker.add",
+                         R"({"time":0.5,"name":"step","clip":"walk"})",
+                         {}},
+                    Case{{"marker", "remove", "7", "--actor", "a"}, "marker.remove", R"({"marker":7,"actor":"a"})", {}},
+                    Case{{"layer", "set", "arms", "wave", "--weight", "0.5", "--additive", "--mask", "hand_l,hand_r",
+                          "--fade", "0.3"},
+                         "layer.set",
+                         R"({"layer":"arms","clip":"wave","weight":0.5,"additive":true,"mask":["hand_l","hand_r"],"fade":0.3})",
+                         {}},
+                    Case{{"layer", "remove", "arms", "--fade", "1"}, "layer.remove", R"({"layer":"arms","fade":1})", {}},
+                    Case{{"schedule", "list", "--scene", "two"}, "schedule.list", R"({"scene":"two"})", {}},
+                    Case{{"schedule", "cancel", "3"}, "schedule.cancel", R"({"scheduled":3})", {}},
+                    Case{{"camera", "--eye", "1,2,3", "--at", "9"}, "camera.set", R"({"eye":[1,2,3],"at_us":9})", {}},
+                    Case{{"actor", "update", "--spin", "1", "--at", "9"}, "actor.update", R"({"spin":1,"at_us":9})", {}}));
 
 INSTANTIATE_TEST_SUITE_P(
     Views, Requests,

@@ -56,6 +56,13 @@ TEST(CommandTable, EveryRowHasTheHandlerOfItsShape) {
   }
 }
 
+TEST(CommandTable, SchedulesPlaybackTheCameraAndActors) {
+  for (const Command& c : command_table()) {
+    const bool playback = c.name.starts_with("playback.") && c.name != "playback.get";
+    EXPECT_EQ(c.timed != nullptr, playback || c.name == "camera.set" || c.name == "actor.update") << c.name;
+  }
+}
+
 TEST(CommandTable, EveryParameterIsExplained) {
   for (const Command& c : command_table()) {
     for (const protocol::FieldInfo& f : c.params->fields) EXPECT_FALSE(f.doc.empty()) << c.name << " " << f.name;
