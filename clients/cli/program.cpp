@@ -49,6 +49,7 @@ void add_every_family(CommandSet& commands) {
   add_view_commands(commands);
   add_sample_commands(commands);
   add_frame_commands(commands);
+  add_export_commands(commands);
   add_event_commands(commands);
   add_watch_commands(commands);
   add_raw_commands(commands);

@@ -79,6 +79,16 @@ INSTANTIATE_TEST_SUITE_P(
              {}}));
 
 INSTANTIATE_TEST_SUITE_P(
+    Exports, Requests,
+    testing::Values(
+        Case{{"export", "a/b.glb", "--actor", "box"}, "asset.export", R"({"name":"a/b.glb","actor":"box","format":"glb"})", {}},
+        Case{{"export", "walk"}, "asset.export", R"({"name":"walk","format":"obj_sequence"})", {}},
+        Case{{"export", "walk", "--format", "glb", "--scene", "two"},
+             "asset.export",
+             R"({"name":"walk","format":"glb","scene":"two"})",
+             {}}));
+
+INSTANTIATE_TEST_SUITE_P(
     Keyframes, Requests,
     testing::Values(Case{{"keyframe", "add", "--capture"}, "keyframe.add", R"({"capture":true})", {}},
                     Case{{"keyframe", "add", "--pose", R"({"hip":{"rotation":[0,0,0,1]}})", "--sparse", "--interpolation",
