@@ -5,7 +5,7 @@ import math
 
 from mesh import add, mix, scale, smoothstep
 from surface import above, ball, both, joined, limb, net, puck
-from walker_skeleton import (ANKLE_HEIGHT_M, HIP_HEIGHT_M, HIP_WIDTH_M, KNEE_HEIGHT_M, LOWER_ARM_M, SHOULDER, UPPER_ARM_M,
+from walker_skeleton import (ANKLE_HEIGHT_M, HIP_HEIGHT_M, HIP_WIDTH_M, KNEE_HEIGHT_M, LOWER_ARM_M, UPPER_ARM_M,
                              along_arm, arm_direction)
 
 Y = (0.0, 1.0, 0.0)

@@ -6,9 +6,9 @@ flat. In between it swings on a curve that leaves and meets the ground at the gr
 """
 import math
 
-from mesh import add, cross, dot, lerp, mix, scale, smoothstep, sub, unit
+from mesh import add, cross, dot, lerp, scale, smoothstep, sub, unit
 from turning import STILL, X, Y, Z, about, after, back, of_axes, turned
-from walker_skeleton import (ANKLE_HEIGHT_M, HIP_HEIGHT_M, HIP_WIDTH_M, KNEE_HEIGHT_M, NAMES, PARENTS, PLACES, TOES,
+from walker_skeleton import (ANKLE_HEIGHT_M, HIP_HEIGHT_M, KNEE_HEIGHT_M, NAMES, PARENTS, TOES,
                              arm_direction, offset)
 
 THIGH_M, SHANK_M = HIP_HEIGHT_M - KNEE_HEIGHT_M, KNEE_HEIGHT_M - ANKLE_HEIGHT_M

@@ -5,7 +5,7 @@ joint; what is not passed on stays. So the weights of a vertex sum to 1 and chan
 """
 import math
 
-from mesh import dot, scale, smoothstep, sub
+from mesh import dot, smoothstep, sub
 from walker_skeleton import JOINTS, PLACES, arm_direction
 
 INFLUENCES = 4  # as glTF's first set has them
@@ -58,17 +58,13 @@ def leg_share(name, side, p, off, pulled_by):
 
 def weights(p, pulled_by):
     """{number of the joint: weight}; the weights sum to 1."""
-    left, found = {"hips": 1.0}, {}
-    for number, (joint, parent, _) in enumerate(JOINTS):
+    given, left = {}, {}  # what each joint was given by its parent, and what of it stays
+    for joint, parent, _ in JOINTS:
+        taken = 1.0 if parent is None else min(left[parent], given[parent] * share(joint, p, pulled_by))
         if parent is not None:
-            taken = min(left[parent], given[parent] * share(joint, p, pulled_by)) if left[parent] > 0 else 0.0
             left[parent] -= taken
-            left[joint] = taken
-        given = {**given, joint: left[joint]} if parent is not None else {joint: 1.0}
-    for number, (joint, _, _) in enumerate(JOINTS):
-        if left[joint] > 0:
-            found[number] = left[joint]
-    return found
+        given[joint] = left[joint] = taken
+    return {number: left[joint] for number, (joint, _, _) in enumerate(JOINTS) if left[joint] > 0}
 
 
 def stored(found):

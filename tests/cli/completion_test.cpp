@@ -78,7 +78,7 @@ TEST(Completion, AsksTheServerForMethodsAndTheirParameters) {
 }
 
 TEST(Completion, KnowsThePictures) {
-  EXPECT_THAT(complete("tweenctl watch "), UnorderedElementsAre("vertices", "frames"));
+  EXPECT_THAT(complete("tweenctl watch "), UnorderedElementsAre("vertices", "pose", "frames"));
   EXPECT_THAT(complete("tweenctl watch frames --encoding "), ElementsAre("jpeg", "png"));
   EXPECT_THAT(complete("tweenctl watch frames --o"), UnorderedElementsAre("--out", "--orbit"));
   EXPECT_THAT(complete("tweenctl frame a.png --el"), ElementsAre("--elevation"));

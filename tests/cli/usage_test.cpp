@@ -41,9 +41,10 @@ TEST(Usage, UnknownWordsAreNamed) {
 
 TEST(Usage, MissingArgumentsAreNamed) {
   EXPECT_EQ(complaint({"seek"}), "tweenctl: TIME is required; see `tweenctl seek --help`\n");
-  EXPECT_EQ(complaint({"keyframe", "add"}), "tweenctl: nothing to send: expected one of --capture, --vertices\n");
+  EXPECT_EQ(complaint({"keyframe", "add"}),
+            "tweenctl: nothing to send: expected one of --capture, --vertices, --pose, --weights\n");
   EXPECT_EQ(complaint({"set"}), "tweenctl: nothing to send: expected one of --speed, --loop, --range\n");
-  EXPECT_EQ(complaint({"add", "box"}), "tweenctl: nothing to send: expected one of --asset, --mesh\n");
+  EXPECT_EQ(complaint({"add", "box"}), "tweenctl: nothing to send: expected one of --asset, --mesh, --skeleton\n");
 }
 
 TEST(Usage, WrongValuesSayWhatWasExpected) {

@@ -38,7 +38,7 @@ TEST(WatchPose, PrintsALineAPacket) {
   const auto run = run_cli(stream({{"actor", "man"}, {"rate", 10}}, kLayout),
                            {"watch", "pose", "--count", "1", "--rate", "10", "--actor", "man"});
   EXPECT_EQ(run.code, ExitCode::Done) << run.err;
-  EXPECT_NE(run.out.find("key  1 joint, 1 weight, hip at (1, 2, -3)\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("  1 joint, 1 weight, hip at (1, 2, -3)\n"), std::string::npos) << run.out;
 }
 
 TEST(WatchPose, PrintsHeadersForPrograms) {
