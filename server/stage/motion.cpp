@@ -26,7 +26,8 @@ namespace {
 /// Whole seconds apart from the rest, and divided last: what is even comes out even, after microseconds and after years.
 double media_seconds(double speed, ClockUs clock_us) noexcept {
   constexpr ClockUs kSecond = 1'000'000;
-  return speed * static_cast<double>(clock_us / kSecond) + speed * static_cast<double>(clock_us % kSecond) / 1e6;
+  const ClockUs whole_s = clock_us / kSecond;
+  return speed * static_cast<double>(whole_s) + speed * static_cast<double>(clock_us % kSecond) / 1e6;
 }
 
 }  // namespace

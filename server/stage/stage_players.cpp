@@ -94,8 +94,8 @@ void Stage::carry_out(const std::string& scene, const PlayersChange& change, Clo
   publish(scene, view);
   // Told first: whoever subscribes after the answer hears of nothing that came before.
   if (!concerned->empty()) listener_->players_changed(view, *concerned, as_of_us);
-  done(PlayersAnswer{view, *concerned, as_of_us});
   tell_starts(before, view, as_of_us);
+  done(PlayersAnswer{view, *concerned, as_of_us});
   settle(as_of_us);  // a `once` of no length is over as it starts
   arm_timer();
 }
