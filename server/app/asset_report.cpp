@@ -60,7 +60,7 @@ std::string report_skeleton(const model::Skeleton& skeleton) {
 
 std::string describe(const model::Material& m) {
   const auto byte = [](float c) { return static_cast<int>(std::lround(std::clamp(c, 0.0F, 1.0F) * 255.0F)); };
-  std::string text = fmt::format("#{:02x}{:02x}{:02x}", byte(m.base_color.r), byte(m.base_color.g), byte(m.base_color.b));
+  std::string text = fmt::format("#{:02x}{:02x}{:02x}", byte(m.base_color.x), byte(m.base_color.y), byte(m.base_color.z));
   if (m.base_color_texture) {
     text += fmt::format(", texture {} x {}", m.base_color_texture->width(), m.base_color_texture->height());
   }

@@ -130,8 +130,8 @@ TEST(GltfPrimitives, StandBehindEachOther) {
   EXPECT_EQ(mesh.surface().materials[0].base_color, glm::vec3(1.0F)) << "the format's default";
   const model::Material& red = mesh.surface().materials[1];
   EXPECT_EQ(red.name, "red");
-  EXPECT_NEAR(red.base_color.r, 0.735357, 1e-5) << "sRGB of half the light";
-  EXPECT_EQ(red.base_color.b, 1.0F);
+  EXPECT_NEAR(red.base_color.x, 0.735357, 1e-5) << "sRGB of half the light";
+  EXPECT_EQ(red.base_color.z, 1.0F);
   EXPECT_EQ(red.alpha, 0.25F);
   EXPECT_EQ(red.alpha_cutoff, 0.75F);
   EXPECT_TRUE(red.unlit);

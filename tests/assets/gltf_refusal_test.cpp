@@ -296,7 +296,7 @@ const Damage kDamages[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Damages, GltfRefusal, ::testing::ValuesIn(kDamages),
-                         [](const auto& info) { return std::string(info.param.name); });
+                         [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(GltfLimits, NoMemoryIsTakenForCountsThatNothingBacks) {
   // Zeros need no bytes in the file: their count is bound by the limits alone.
