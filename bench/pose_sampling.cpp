@@ -152,7 +152,7 @@ double distance_to(const std::vector<double>& three, const Character& character)
   return worst;
 }
 
-void race_three(bool moves, const std::vector<double>& jumps_s, std::vector<bench::Claim>& claims) {
+void race_three(bool moves, std::vector<bench::Claim>& claims) {
   const CharacterClip clip(67, kDurationS, moves);
   const TrackSet tracks = clip.packed();
   const std::string file =
@@ -181,7 +181,6 @@ void race_three(bool moves, const std::vector<double>& jumps_s, std::vector<benc
   std::printf(
       "%6s  %-9s step %.2f; three.js: step %.0f, its mixer alone %.0f, a step elsewhere %.0f; step/tw. %.0f, mixer/tw. %.0f\n",
       "67", moves ? "T R S" : "R", race.ns(0), race.ns(1), race.ns(2), race.ns(3), race.ratio(1, 0), race.ratio(2, 0));
-  static_cast<void>(jumps_s);
   if (moves) claims.push_back({"pose_step_three_vs_tweend", race.ratio(1, 0), 35.0, true});
 }
 
@@ -222,7 +221,7 @@ int main() {
   race_crowd(jumps_s, claims);
   if (bench::ThreeMixer::is_installed()) {
     std::printf("\nbeside three.js, ns a joint\n");
-    for (const bool moves : {true, false}) race_three(moves, jumps_s, claims);
+    for (const bool moves : {true, false}) race_three(moves, claims);
   } else {
     std::printf("\nthree.js is not measured: expected Node, and three.js in bench/three_mixer; `./dev bench` installs it\n");
   }

@@ -124,7 +124,7 @@ PosePlace GpuDeform::bind(const DrawItem& item, FrameMemory& memory) const {
   // One piece for both: they are read from one buffer.
   const FrameMemory::Piece piece = memory.take(item.palette.size_bytes() + targets * sizeof(TargetWords));
   if (piece.memory.empty()) return {};
-  std::memcpy(piece.memory.data(), item.palette.data(), item.palette.size_bytes());
+  if (!item.palette.empty()) std::memcpy(piece.memory.data(), item.palette.data(), item.palette.size_bytes());
   std::byte* to = piece.memory.data() + item.palette.size_bytes();
   for (std::size_t i = 0; i < weights; ++i) {
     if (!weighs(i)) continue;

@@ -22,7 +22,7 @@ void add_clip_commands(CommandSet& commands) {
   commands.group("clip", "Make, change or remove clips.");
   with_settings(add_edit(commands, "clip create", "NAME", "Make a clip."), false)
       .option("--keys", "keys", integers("ID,ID,…"), "a cue: these keyframes of another clip, evenly spaced over the duration")
-      .option("--type", "type", text("vertex"), "what its keyframes hold; left out: the first one says")
+      .option("--type", "type", word("vertex|skeletal"), "what its keyframes hold; left out: the first one says")
       .requests("clip.create", "clip {clip} created");
   with_settings(add_edit(commands, "clip update", "CLIP", "Change a clip; what is left out stays."), true)
       .needs_one_of({"--closed", "--open", "--duration", "--interpolation"})

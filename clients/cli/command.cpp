@@ -11,6 +11,7 @@
 #include "clients/cli/failure.hpp"
 #include "clients/cli/format.hpp"
 #include "clients/cli/session.hpp"
+#include "clients/cli/timing.hpp"
 
 namespace tweend::cli {
 namespace {
@@ -97,9 +98,11 @@ Command& Command::in_scene() {
 
 void Command::requests(std::string method, Show show) {
   runs([method = std::move(method), show = std::move(show)](Session& session, const Arguments& arguments) {
-    const Json result = session.call(method, arguments.params);
+    const Json result = session.call(method, timed_params(session, arguments));
     if (session.options().json) {
       session.out() << to_line(result) << '\n';
+    } else if (const std::string scheduled = scheduled_text(result); !scheduled.empty()) {
+      session.out() << scheduled << '\n';
     } else {
       show(session.out(), arguments.params, result);
     }

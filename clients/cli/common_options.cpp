@@ -25,7 +25,7 @@ Command& with_transform(Command& command) {
 }
 
 Command& with_interpolation(Command& command, bool clearable) {
-  ValueKind kind = word("step|linear|catmull_rom");
+  ValueKind kind = word("step|linear|catmull_rom|cubic");
   return command.option("--interpolation", "interpolation", clearable ? or_none(kind) : kind, "how keyframes are blended");
 }
 
@@ -35,7 +35,11 @@ Command& with_keyframe_content(Command& command, std::istream& in, bool clearabl
       .option("--easing", "easing", clearable ? or_none(easing) : easing, "a CSS cubic-bezier for the way to the next keyframe")
       .flag("--capture", "capture", "hold what the actor shows at this moment")
       .option("--vertices", "vertices", json_file(in), "hold these: JSON {positions, normals?}, - for standard input")
-      .exclusive({"--capture", "--vertices"});
+      .option("--pose", "pose", json_or_file(in), "hold this: JSON {joint: {rotation?, translation?, scale?}, ...}")
+      .option("--weights", "weights", any_numbers("W,W,…"), "of all morph targets, in their order")
+      .flag("--sparse", "sparse", "key only what is named, not every joint")
+      .exclusive({"--capture", "--vertices", "--pose"})
+      .exclusive({"--vertices", "--weights"});
 }
 
 }  // namespace tweend::cli

@@ -16,7 +16,7 @@ Command& with_edit_options(Command& command);
 Command& with_transform(Command& command);
 /// --interpolation; `clearable`: the word none gives it back to the next in line.
 Command& with_interpolation(Command& command, bool clearable);
-/// --capture and --vertices, --interpolation and --easing: what a keyframe holds.
+/// --capture, --vertices, --pose, --weights and --sparse, --interpolation and --easing: what a keyframe holds.
 Command& with_keyframe_content(Command& command, std::istream& in, bool clearable);
 
 }  // namespace tweend::cli

@@ -23,6 +23,19 @@ std::string players_text(const Json& players) {
   return text;
 }
 
+/// Which marker of which clip: `scene main, box walk: left at 0.5 s`.
+std::string crossing_text(const Json& params) {
+  return fmt::format("scene {}, {} {}: {} at {} s", brief_member(params, "scene"), brief_member(params, "actor"),
+                     brief_member(params, "clip"), brief_member(params, "name"), brief_member(params, "time"));
+}
+
+std::string params_text(const Json& method, const Json& params) {
+  if (params.contains("players")) {
+    return fmt::format("scene {}, {}", brief_member(params, "scene"), players_text(params.at("players")));
+  }
+  return method == "marker.crossed" ? crossing_text(params) : brief(params);
+}
+
 }  // namespace
 
 Json next_event(Session& session, Deadline deadline) {
@@ -44,11 +57,7 @@ Json parse_event(const std::string& line) {
 std::string event_line(const Json& event, bool json) {
   const Json& params = event.at("params");
   if (json) return to_line({{"method", event.at("method")}, {"params", params}});
-  const bool has_players = params.contains("players");
-  return fmt::format("{:<16}  {}", brief(event.at("method")),
-                     has_players
-                         ? fmt::format("scene {}, {}", brief_member(params, "scene"), players_text(params.at("players")))
-                         : brief(params));
+  return fmt::format("{:<16}  {}", brief(event.at("method")), params_text(event.at("method"), params));
 }
 
 bool concerns(const Json& event, std::string_view actor) {

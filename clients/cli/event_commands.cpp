@@ -71,6 +71,7 @@ void add_event_commands(CommandSet& commands) {
   add_wait(commands, "wait ended", "playback.ended", "Wait for the next end of a playback.")
       .flag("--if-playing", own("if_playing"), "return at once if no player is playing");
   add_wait(commands, "wait changed", "playback.changed", "Wait until a player is next played, paused, sought or set.");
+  add_wait(commands, "wait marker", "marker.crossed", "Wait until a player next passes a marker of its clip.");
   add_wait(commands, "wait edited", "scene.changed", "Wait for the next edit.");
 }
 

@@ -30,11 +30,11 @@ void add_keyframe_commands(CommandSet& commands) {
   with_keyframe_content(with_edit_options(with_clip(with_actor(commands.add("keyframe add", "Add a keyframe.")))),
                         commands.in(), false)
       .option("--time", "time", number("SECONDS"), "left out: one second after the last keyframe")
-      .needs_one_of({"--capture", "--vertices"})
+      .needs_one_of({"--capture", "--vertices", "--pose", "--weights"})
       .requests("keyframe.add", "keyframe {keyframe} added at {time} s");
   with_keyframe_content(add_edit(commands, "keyframe update", "Change what a keyframe holds."), commands.in(), true)
       .option("--time", "time", number("SECONDS"), "move it there as well")
-      .needs_one_of({"--capture", "--vertices", "--interpolation", "--easing", "--time"})
+      .needs_one_of({"--capture", "--vertices", "--pose", "--weights", "--interpolation", "--easing", "--time"})
       .requests("keyframe.update", "keyframe {keyframe} updated");
   add_edit(commands, "keyframe move", "Move a keyframe in time.")
       .argument("TIME", "time", number("SECONDS"), "media seconds")

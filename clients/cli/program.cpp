@@ -40,11 +40,16 @@ void add_every_family(CommandSet& commands) {
   add_actor_commands(commands);
   add_keyframe_commands(commands);
   add_clip_commands(commands);
+  add_pose_commands(commands);
   add_edit_commands(commands);
   add_playback_commands(commands);
+  add_marker_commands(commands);
+  add_layer_commands(commands);
+  add_schedule_commands(commands);
   add_view_commands(commands);
   add_sample_commands(commands);
   add_frame_commands(commands);
+  add_export_commands(commands);
   add_event_commands(commands);
   add_watch_commands(commands);
   add_raw_commands(commands);

@@ -60,6 +60,13 @@ std::vector<double> parse_numbers(std::string_view text, const std::vector<std::
   return values;
 }
 
+/// @param source  what a person gave, for the error
+Json parse_json(const std::string& content, std::string_view source) {
+  Json value = Json::parse(content, nullptr, false);
+  if (value.is_discarded()) throw unexpected("JSON", source);
+  return value;
+}
+
 }  // namespace
 
 ValueKind text(std::string shape) {
@@ -92,12 +99,28 @@ ValueKind numbers(std::string shape, std::initializer_list<std::size_t> sizes) {
           [sizes = std::vector(sizes)](const std::string& found) { return Json(parse_numbers(found, sizes)); }};
 }
 
+ValueKind any_numbers(std::string shape) {
+  return {std::move(shape), [](const std::string& found) {
+            Json values = Json::array();
+            for (const auto part : split(found, ',')) values.push_back(parse_number(part));
+            return values;
+          }};
+}
+
 ValueKind integers(std::string shape) {
   return {std::move(shape), [](const std::string& found) {
             Json values = Json::array();
             for (const auto part : split(found, ',')) {
               values.push_back(parse<std::int64_t>(part, "integers separated by commas"));
             }
+            return values;
+          }};
+}
+
+ValueKind texts(std::string shape) {
+  return {std::move(shape), [](const std::string& found) {
+            Json values = Json::array();
+            for (const auto part : split(found, ',')) values.push_back(part);
             return values;
           }};
 }
@@ -118,10 +141,12 @@ ValueKind or_none(const ValueKind& kind) {
 }
 
 ValueKind json_file(std::istream& in) {
-  return {"FILE", [&in](const std::string& path) {
-            Json value = Json::parse(read_file(path, in), nullptr, false);
-            if (value.is_discarded()) throw unexpected("JSON", path);
-            return value;
+  return {"FILE", [&in](const std::string& path) { return parse_json(read_file(path, in), path); }};
+}
+
+ValueKind json_or_file(std::istream& in) {
+  return {"JSON|@FILE", [&in](const std::string& found) {
+            return found.starts_with('@') ? parse_json(read_file(found.substr(1), in), found) : parse_json(found, found);
           }};
 }
 

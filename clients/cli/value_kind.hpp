@@ -28,14 +28,20 @@ struct ValueKind {
 [[nodiscard]] ValueKind count(std::string shape = "N");
 /// Numbers separated by commas, as many as one of `sizes` says.
 [[nodiscard]] ValueKind numbers(std::string shape, std::initializer_list<std::size_t> sizes);
+/// Any count of numbers separated by commas.
+[[nodiscard]] ValueKind any_numbers(std::string shape);
 /// Integers separated by commas.
 [[nodiscard]] ValueKind integers(std::string shape);
+/// Texts separated by commas.
+[[nodiscard]] ValueKind texts(std::string shape);
 /// One of the words of `shape`, `a|b|c`.
 [[nodiscard]] ValueKind word(const std::string& shape);
 /// The same, and the word `none` for null, which clears a setting.
 [[nodiscard]] ValueKind or_none(const ValueKind& kind);
 /// The JSON in a file; `-` is `in`.
 [[nodiscard]] ValueKind json_file(std::istream& in);
+/// JSON as it stands, or with `@` before it the JSON in a file; `@-` is `in`.
+[[nodiscard]] ValueKind json_or_file(std::istream& in);
 /// Three numbers, or one for all three axes.
 [[nodiscard]] ValueKind scale();
 /// An angle in radians about +Y, as a quaternion.

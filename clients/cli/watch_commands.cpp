@@ -17,6 +17,7 @@
 #include "clients/cli/picture_options.hpp"
 #include "clients/cli/session.hpp"
 #include "clients/cli/watch_frames.hpp"
+#include "clients/cli/watch_pose.hpp"
 #include "server/base/clock.hpp"
 
 namespace tweend::cli {
@@ -58,8 +59,8 @@ ExitCode watch_vertices(Session& session, const Arguments& arguments) {
   return ExitCode::Done;
 }
 
-Command& with_packets(Command& command) {
-  return command.option("--rate", "rate", number(), "packets a second (default 30)")
+Command& with_packets(Command& command, int rate = 30) {
+  return command.option("--rate", "rate", number(), fmt::format("packets a second (default {})", rate))
       .option("--count", own("count"), count(), "stop after so many");
 }
 
@@ -71,6 +72,10 @@ void add_watch_commands(CommandSet& commands) {
       with_actor(
           commands.add("watch vertices", "Open a stream of vertices and print a line a packet, until interrupted.").in_scene()))
       .runs(watch_vertices);
+  with_packets(
+      with_actor(commands.add("watch pose", "Open a stream of poses and print a line a packet, until interrupted.").in_scene()),
+      60)
+      .runs(watch_pose);
   Command& frames =
       commands
           .add("watch frames", "Open a stream of pictures; store each in a file or print a line a packet, until interrupted.")

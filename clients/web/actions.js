@@ -41,7 +41,15 @@ export function make_actions(connection, store, report) {
    * @param {Record<string, unknown>} [params]
    */
   const playback = async (method, params = {}) => {
-    const answer = await call(method, { ...scope(), ...params });
+    await answered(call(method, { ...scope(), ...params }));
+  };
+
+  /**
+   * What the players are after a command is shown without waiting for the event.
+   * @param {Promise<any>} asked
+   */
+  const answered = async (asked) => {
+    const answer = await asked;
     if (answer) store.dispatch({ type: "players", ...answer });
   };
 
@@ -95,6 +103,25 @@ export function make_actions(connection, store, report) {
      * @param {boolean} visible
      */
     set_visible: (actor, visible) => call("actor.update", { scene: store.state.scene, actor, visible }),
+    /**
+     * @param {string} actor
+     * @param {boolean} show_skeleton
+     */
+    set_skeleton: (actor, show_skeleton) => call("actor.update", { scene: store.state.scene, actor, show_skeleton }),
+    /**
+     * Another clip, faded to from what is shown; a player that stands still stands at its beginning.
+     * @param {string} actor
+     * @param {string} clip
+     */
+    play_clip: (actor, clip) => {
+      const { scene, players, fade_s } = store.state;
+      const plays = players[actor]?.playing ?? false;
+      const started = answered(call("playback.play", { scene, actor, clip, ...(plays ? { fade: fade_s } : {}) }));
+      // Carried out in the order they are sent: nothing moves in between.
+      return plays ? started : Promise.all([started, answered(call("playback.pause", { scene, actor }))]);
+    },
+    /** @param {number} seconds */
+    set_fade: (seconds) => store.dispatch({ type: "fade", seconds }),
     /** @param {string | null} actor  null: all of them */
     select: (actor) => store.dispatch({ type: "selected", actor }),
   };

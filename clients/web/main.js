@@ -6,6 +6,8 @@ import { make_actions } from "./actions.js";
 import { ServerClock } from "./clock.js";
 import { Connection } from "./connection.js";
 import { show_actor_list } from "./controls/actor_list.js";
+import { show_fade } from "./controls/clip_picker.js";
+import { show_marker_ticks } from "./controls/marker_ticks.js";
 import { show_messages } from "./controls/messages.js";
 import { show_playback_options } from "./controls/playback_options.js";
 import { show_scrubber } from "./controls/scrubber.js";
@@ -73,7 +75,9 @@ show_connection(connection, store);
 show_meter(meter, canvas);
 show_transport(store, actions);
 show_playback_options(store, actions);
+show_fade(store, actions);
 show_actor_list(store, actions);
+show_marker_ticks(store);
 const scrubber = show_scrubber(store, actions, () => clock.now_us());
 
 const each_frame = () => {

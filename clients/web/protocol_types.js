@@ -4,7 +4,7 @@
  * Times are media seconds where nothing says otherwise; `…_us` are microseconds of the server's steady clock.
  *
  * @typedef {"once" | "repeat" | "ping_pong"} Loop
- * @typedef {"step" | "linear" | "catmull_rom"} Interpolation
+ * @typedef {"step" | "linear" | "catmull_rom" | "cubic"} Interpolation
  * @typedef {[number, number, number]} Vec3
  *
  * @typedef {object} PlayerMessage  one player, as every `playback.*` answers it
@@ -26,9 +26,16 @@
  * @property {string | null} source
  * @property {Interpolation | null} interpolation  null: left to the clip
  * @property {boolean} visible
+ * @property {boolean} show_skeleton
+ * @property {{name: string, parent: string | null}[]} joints
  * @property {number} vertices
  * @property {number} triangles
  * @property {{clip: string, type: string | null, keyframes: number, duration: number, closed: boolean}[]} clips
+ *
+ * @typedef {object} MarkerMessage  a named instant of a clip
+ * @property {number} marker  its id
+ * @property {number} time
+ * @property {string} name
  *
  * @typedef {object} CameraMessage
  * @property {Vec3} eye

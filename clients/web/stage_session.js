@@ -3,7 +3,7 @@
  *
  * @import {Connection} from "./connection.js"
  * @import {ServerClock} from "./clock.js"
- * @import {StageStore} from "./stage_state.js"
+ * @import {StageState, StageStore} from "./stage_state.js"
  * @import {ServerEvent} from "./protocol_types.js"
  */
 import { Latest } from "./latest.js";
@@ -22,6 +22,9 @@ export class StageSession {
   #clock;
   #report;
   #refresh = new Latest(() => this.#describe());
+  #markers = new Latest((/** @type {{actor: string, clip: string}} */ which) => this.#list_markers(which));
+  /** Of what the markers were asked last. */
+  #marked = "";
 
   /**
    * @param {Connection} connection
@@ -45,6 +48,7 @@ export class StageSession {
       }
     });
     this.#connection.events.add((event) => this.#happened(event));
+    this.#store.subscribe((state) => this.#follow_markers(state));
     setInterval(() => void this.#keep_the_clock(), kPingEvery_ms);
     setInterval(() => this.#poll(), kPollEvery_ms);
   }
@@ -84,9 +88,31 @@ export class StageSession {
       this.#store.dispatch({ type: "players", players: params.players, server_time_us: params.server_time_us });
     } else if (method === "playback.ended") {
       this.#store.dispatch({ type: "ended", actor: params.actor, clip: params.clip });
+    } else if (method === "marker.crossed") {
+      this.#store.dispatch({ type: "crossed", actor: params.actor, clip: params.clip, marker: params.marker });
     } else if (method === "scene.changed") {
       this.#refresh.push(undefined);
     }
+  }
+
+  /**
+   * The line of time shows the lead player's markers: they are asked for when it takes up another clip, and after edits.
+   * @param {StageState} state
+   */
+  #follow_markers(state) {
+    const lead = state.connected ? lead_player(state) : null;
+    const key = lead ? JSON.stringify([lead.actor, lead.clip, state.revision]) : "";
+    if (key === this.#marked) return;
+    this.#marked = key;
+    if (lead) this.#markers.push({ actor: lead.actor, clip: lead.clip });
+  }
+
+  /** @param {{actor: string, clip: string}} which */
+  async #list_markers({ actor, clip }) {
+    const { scene } = this.#store.state;
+    // Gone with the actor, the clip or the connection: each of them is told.
+    const { markers } = await this.#connection.call("marker.list", { scene, actor, clip });
+    this.#store.dispatch({ type: "markers", actor, clip, list: markers });
   }
 
   async #ping() {

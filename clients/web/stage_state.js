@@ -2,7 +2,7 @@
  * What the page knows of the scene, as told by the server, and who is selected: the one thing that views read. Changed by
  * `reduce` alone.
  *
- * @import {ActorMessage, CameraMessage, PlayersMessage, SceneMessage} from "./protocol_types.js"
+ * @import {ActorMessage, CameraMessage, MarkerMessage, PlayersMessage, SceneMessage} from "./protocol_types.js"
  * @import {Player} from "./player_time.js"
  */
 import { Listeners } from "./listeners.js";
@@ -18,6 +18,9 @@ import { anchored, time_at } from "./player_time.js";
  * @property {Record<string, Player>} players  by actor
  * @property {CameraMessage | null} camera  the scene's
  * @property {string | null} selected  an actor; null: all of them
+ * @property {number} fade_s  what a change of clip takes
+ * @property {{actor: string, clip: string, list: MarkerMessage[]} | null} markers  of one clip, once they are known
+ * @property {{actor: string, clip: string, marker: number} | null} crossed  the last marker that was; each its own object
  *
  * @typedef {{type: "connected", can_control: boolean}
  *   | {type: "disconnected", now_us: number | null}
@@ -25,7 +28,10 @@ import { anchored, time_at } from "./player_time.js";
  *   | ({type: "players"} & PlayersMessage)
  *   | {type: "ended", actor: string, clip: string}
  *   | {type: "reading", actor: string | null, time: number, server_us: number, jumped: boolean}
- *   | {type: "selected", actor: string | null}} StageChange
+ *   | {type: "selected", actor: string | null}
+ *   | {type: "fade", seconds: number}
+ *   | {type: "markers", actor: string, clip: string, list: MarkerMessage[]}
+ *   | {type: "crossed", actor: string, clip: string, marker: number}} StageChange
  */
 
 /**
@@ -42,6 +48,9 @@ export function initial_state(scene) {
     players: {},
     camera: null,
     selected: null,
+    fade_s: 0.3,
+    markers: null,
+    crossed: null,
   };
 }
 
@@ -53,6 +62,17 @@ export function initial_state(scene) {
 export function lead_player(state) {
   const name = state.selected ?? state.actors[0]?.actor;
   return (name !== undefined && state.players[name]) || null;
+}
+
+/**
+ * The markers of what the lead player plays; none while they are not known.
+ * @param {StageState} state
+ * @returns {MarkerMessage[]}
+ */
+export function lead_markers(state) {
+  const lead = lead_player(state);
+  const known = state.markers;
+  return lead && known && known.actor === lead.actor && known.clip === lead.clip ? known.list : [];
 }
 
 /**
@@ -147,6 +167,12 @@ export function reduce(state, change) {
       return read(state, change);
     case "selected":
       return { ...state, selected: change.actor };
+    case "fade":
+      return { ...state, fade_s: change.seconds };
+    case "markers":
+      return { ...state, markers: { actor: change.actor, clip: change.clip, list: change.list } };
+    case "crossed":
+      return { ...state, crossed: { actor: change.actor, clip: change.clip, marker: change.marker } };
   }
 }
 

@@ -15,7 +15,8 @@ struct MorphTargetView {
 };
 
 /// vertices += Σ weights[i] · targets[i], each over its run of vertices; then normals and tangents of the vertices touched are
-/// scaled to unit length. Targets of weight 0 cost nothing. Pure; allocates nothing.
+/// scaled to unit length, where there is one, and otherwise stay as they were. Targets of weight 0 cost nothing.
+/// Pure; allocates nothing.
 /// @param targets   shape [weights]
 /// @param vertices  what the base mesh is; streams that are empty are not computed
 /// Precondition: runs lie within the vertices.

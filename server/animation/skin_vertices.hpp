@@ -19,6 +19,7 @@ struct SkinInfluences {
 
 /// Linear blend skinning: position = Σ w · M · p, normals and tangents by the same blended matrix's inverse transpose
 /// (for tangents the matrix itself), scaled to unit length; where that leaves nothing, as they were.
+/// A matrix that flattens space turns normals across the plane that is left; one that mirrors keeps them outside.
 /// Pure; success allocates nothing; safe from any thread.
 /// @param palette  model_from_joint · inverse bind matrix for each entry
 /// @param out      may not overlap `in`

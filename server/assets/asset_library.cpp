@@ -81,6 +81,11 @@ Result<std::vector<AssetInfo>> AssetLibrary::list() const {
   return assets;
 }
 
+Result<const AssetRoot*> AssetLibrary::first_folder() const {
+  if (!roots_.empty()) return &roots_.front();
+  return fail(ErrorCode::Unavailable, "there is no assets folder to save in: start the server with --assets DIR");
+}
+
 Result<model::ImportedModel> AssetLibrary::import(std::string_view name, const ImportOptions& options) const {
   TWEEND_ASSIGN(const model::ModelBlob blob, import_blob(name, options));
   try {

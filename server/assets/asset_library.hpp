@@ -61,6 +61,10 @@ class AssetLibrary {
   /// @return as import
   [[nodiscard]] Result<model::ModelBlob> import_blob(std::string_view name, const ImportOptions& options = {}) const;
 
+  /// Where new assets are saved: the first assets folder.
+  /// @return Unavailable where there is none
+  [[nodiscard]] Result<const AssetRoot*> first_folder() const;
+
  private:
   [[nodiscard]] Result<model::ImportedModel> find_and_import(std::string_view name, const ImportOptions& options = {}) const;
   [[nodiscard]] Result<std::optional<model::ImportedModel>> import_from(const AssetRoot& root, std::string_view name,

@@ -2,10 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "server/assets/new_file.hpp"
 #include "server/assets/open_beneath.hpp"
 #include "server/base/result.hpp"
 
@@ -19,8 +21,8 @@ struct AssetEntry {
   bool link = false;        ///< reached by a symbolic link (of a listing only): whoever walks a tree can loop here
 };
 
-/// A folder whose files may be read, and nothing outside of it. It is opened once and held open; everything under it
-/// is opened beneath that descriptor (open_beneath), so a symbolic link that leaves leads nowhere, while one that
+/// A folder whose files may be read, and new ones saved, and nothing outside of it. It is opened once and held open; everything
+/// under it is opened beneath that descriptor (open_beneath), so a symbolic link that leaves leads nowhere, while one that
 /// stays may be followed.
 ///
 /// Names are as is_clean_name asks; every other name is answered NotFound, as is one that leaves.
@@ -43,12 +45,24 @@ class AssetRoot {
   /// @return NotFound, BadAsset if it's neither a regular file nor a folder
   [[nodiscard]] Result<AssetEntry> find(std::string_view name) const;
 
+  /// Saves a new file, whole or not at all: nobody sees a part of it, and what fails leaves nothing behind. The folder it is to
+  /// be in has to be there. The disk has it when this returns.
+  /// @return Conflict where something of that name is there, NotFound for an unclean name or a missing folder, Unavailable
+  ///         with the system's reason (a full disk, a folder that can't be written to)
+  [[nodiscard]] Status save_file(std::string_view name, std::string_view bytes) const;
+
+  /// Saves a new folder with these files in it, likewise.
+  /// @param files  names without '/', none twice
+  [[nodiscard]] Status save_folder(std::string_view name, std::span<const NewFile> files) const;
+
   /// The folder as it was named to `open`.
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
 
  private:
   AssetRoot(std::string folder, Descriptor root) : folder_(std::move(folder)), root_(std::move(root)) {}
   [[nodiscard]] Result<Descriptor> open_name(std::string_view name, int flags) const;
+  /// The folder that something called `name` is to be saved in.
+  [[nodiscard]] Result<Descriptor> open_place(std::string_view name) const;
 
   std::string folder_;
   Descriptor root_;

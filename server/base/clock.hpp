@@ -19,9 +19,9 @@ using SteadyClock = std::chrono::steady_clock;
   return SteadyClock::time_point(std::chrono::microseconds(at_us));
 }
 
-/// Seconds between two readings.
+/// Seconds between two readings, correctly rounded: 400,000 us are 0.4.
 [[nodiscard]] constexpr double seconds_between(ClockUs from_us, ClockUs to_us) noexcept {
-  return static_cast<double>(to_us - from_us) * 1e-6;
+  return static_cast<double>(to_us - from_us) / 1e6;
 }
 
 }  // namespace tweend

@@ -25,6 +25,7 @@ const std::vector<Command>& command_table() {
     add_vertices_commands(t);
     add_pose_commands(t);
     add_frame_commands(t);
+    add_export_commands(t);
     add_stream_commands(t);
     add_event_commands(t);
     return t;

@@ -8,11 +8,10 @@ namespace {
 stage::TimedAct players_act(const Command& command, const Params& params, const Services& services) {
   return [&command, params, &stage = services.stage](ClockUs as_of_us, const stage::EditDone& done) {
     const auto change = [&](const stage::PlayersTurn& turn) { return command.players(params.get(), turn); };
-    stage.carry_out(command.players_scene(params.get()), change, as_of_us,
-                    [&](const Result<stage::PlayersAnswer>& answer) {
-                      if (!answer) return done(answer.error());
-                      done(command.players_answer(*answer));
-                    });
+    stage.carry_out(command.players_scene(params.get()), change, as_of_us, [&](const Result<stage::PlayersAnswer>& answer) {
+      if (!answer) return done(answer.error());
+      done(command.players_answer(*answer));
+    });
   };
 }
 

@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <glm/geometric.hpp>
 #include <optional>
+#include <span>
 
 #include "server/model/evaluate.hpp"
 
@@ -71,6 +75,22 @@ void add_box(const animation::Affine& matrix, const Bounds& box, float margin, H
   }
 }
 
+/// Joints and bones as they are drawn: how thick follows the length.
+void add_bones(const Skeleton& skeleton, std::span<const animation::Affine> model_from_joint, Hull& hull) {
+  constexpr float kHalfWidth = 0.1F;  // of a bone's length; a joint's ball is smaller
+  const std::span<const std::int32_t> parents = skeleton.parent_places();
+  for (std::size_t place = 0; place < model_from_joint.size(); ++place) {
+    const glm::vec3 joint = transformed(model_from_joint[place], {});
+    const glm::vec3 parent =
+        parents[place] < 0 ? joint : transformed(model_from_joint[static_cast<std::size_t>(parents[place])], {});
+    const float half_width = kHalfWidth * glm::distance(joint, parent);
+    for (const glm::vec3& end : {joint, parent}) {
+      hull.add(end - half_width);
+      hull.add(end + half_width);
+    }
+  }
+}
+
 /// What is seen at one moment.
 void add_moment(const Actor& actor, const Shown& shown, Evaluator& evaluator, Hull& hull) {
   const Model& model = *actor.model;
@@ -79,7 +99,7 @@ void add_moment(const Actor& actor, const Shown& shown, Evaluator& evaluator, Hu
   for (std::size_t i = 0; i < skin.size(); ++i) add_box(skin[i], model.skin->entry_bounds()[i], margin, hull);
   if (model.rest && !model.skin) add_box({}, model.rest->bounds(), margin, hull);
   if (model.mesh && !actor.settings.show_skeleton) return;
-  for (const animation::Affine& joint : evaluator.model_from_joint(actor, shown)) hull.add(transformed(joint, {}));
+  if (model.skeleton) add_bones(*model.skeleton, evaluator.model_from_joint(actor, shown), hull);
 }
 
 Bounds pose_clip_bounds(const Actor& actor, const ClipPtr& clip) {

@@ -13,6 +13,7 @@
 #include "protocol/utf8.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
+#include "server/net/actor_routes.hpp"
 #include "server/net/picture_routes.hpp"
 #include "server/net/same_origin.hpp"
 
@@ -111,7 +112,7 @@ HttpResponse answer_get(const HttpRequest& request, std::string_view path, Sessi
   if (path == "/") return http_answer(request, 200, kText, welcome());
   return http_answer(request, 404, kText,
                      fmt::format("expected /, /healthz, /readyz, /metrics, /openrpc.json, /rpc, /ws, /scenes/SCENE/frame.png, "
-                                 "frame.jpg or stream.mjpg, found {}\n",
+                                 "frame.jpg, stream.mjpg or actors/ACTOR.glb, found {}\n",
                                  path));
 }
 
@@ -165,6 +166,7 @@ asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& 
     if (scene->leaf == "frame.png" || scene->leaf == "frame.jpg") co_return co_await answer_frame(request, *scene, context);
     // A GET of it never comes here: it becomes a session of its own.
     if (scene->leaf == "stream.mjpg") co_return answer_stream_head(request, *scene, context);
+    if (const auto actor = parse_actor_file(*scene)) co_return co_await answer_actor_file(request, *scene, *actor, context);
   }
   co_return answer_get(request, path, context);
 }

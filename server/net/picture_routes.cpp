@@ -58,11 +58,6 @@ unsigned http_status(ErrorCode code) noexcept {
   }
 }
 
-HttpResponse refused(const HttpRequest& request, const Error& error) {
-  const std::string path = error.path.empty() ? "" : error.path + ": ";
-  return http_answer(request, http_status(error.code), kText, path + error.message + "\n");
-}
-
 /// The query as parameters of type P, as if they had come by JSON-RPC.
 template <class P>
 Result<P> parameters(const HttpRequest& request, std::initializer_list<Member> given, const SessionContext& context) {
@@ -87,6 +82,13 @@ struct Awaited {
 };
 
 }  // namespace
+
+HttpResponse refuse(const HttpRequest& request, const Error& error) {
+  const std::string path = error.path.empty() ? "" : error.path + ": ";
+  return http_answer(request, http_status(error.code), kText, path + error.message + "\n");
+}
+
+std::string decode_path(std::string_view text) { return decoded(text, false); }
 
 std::optional<ScenePath> parse_scene_path(std::string_view path) {
   constexpr std::string_view kPrefix = "/scenes/";
@@ -143,10 +145,10 @@ asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const Sce
   const bool png = path.leaf == "frame.png";
   const auto params =
       parameters<commands::FrameParams>(request, {{"scene", path.scene}, {"format", png ? "png" : "jpeg"}}, context);
-  if (!params) co_return refused(request, params.error());
+  if (!params) co_return refuse(request, params.error());
   const commands::Services& services = context.services;
   Result<streams::StillRequest> still = commands::still_request(*params, {services, services.stage.view(), steady_now_us()});
-  if (!still) co_return refused(request, still.error());
+  if (!still) co_return refuse(request, still.error());
 
   const auto awaited = std::make_shared<Awaited>(co_await asio::this_coro::executor);
   services.stills.render(std::move(*still), [awaited, to_network = context.to_network](Result<streams::Still> done) {
@@ -163,18 +165,18 @@ asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const Sce
     });
   });
   while (!awaited->file) co_await awaited->arrived.async_wait(asio::as_tuple(asio::use_awaitable));
-  if (!*awaited->file) co_return refused(request, awaited->file->error());
+  if (!*awaited->file) co_return refuse(request, awaited->file->error());
   co_return http_answer(request, 200, png ? "image/png" : "image/jpeg", std::move(**awaited->file));
 }
 
 std::variant<commands::StreamOpenParams, HttpResponse> prepare_stream(const HttpRequest& request, const ScenePath& path,
                                                                       const SessionContext& context) {
   auto params = parameters<commands::StreamOpenParams>(request, {{"scene", path.scene}, {"kind", "frames"}}, context);
-  if (!params) return refused(request, params.error());
+  if (!params) return refuse(request, params.error());
   const auto view = context.services.stage.view();
-  if (const auto key = commands::stream_key(*params, *view, context.services); !key) return refused(request, key.error());
+  if (const auto key = commands::stream_key(*params, *view, context.services); !key) return refuse(request, key.error());
   if (params->encoding.value_or(commands::StreamEncoding::Jpeg) != commands::StreamEncoding::Jpeg) {
-    return refused(request, fail(ErrorCode::InvalidParams, "expected jpeg, what this path is named for", "params.encoding"));
+    return refuse(request, fail(ErrorCode::InvalidParams, "expected jpeg, what this path is named for", "params.encoding"));
   }
   return std::move(*params);
 }

@@ -20,6 +20,11 @@ struct ScenePath {
 };
 [[nodiscard]] std::optional<ScenePath> parse_scene_path(std::string_view path);
 
+/// A part of a path without its escapes (RFC 3986, 2.1); empty where that is no UTF-8.
+[[nodiscard]] std::string decode_path(std::string_view text);
+/// The answer of a request that is refused for this reason.
+[[nodiscard]] HttpResponse refuse(const HttpRequest& request, const Error& error);
+
 /// What the path has said already.
 struct Member {
   std::string_view name;

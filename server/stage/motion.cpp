@@ -21,6 +21,16 @@ double clamped_or_wrapped(const PlayRange& r, Loop loop, double time_s) noexcept
   return std::min(r.in_s + laps_of(time_s - r.in_s, r.length_s()).rest, r.out_s);
 }
 
+namespace {
+
+/// Whole seconds apart from the rest, and divided last: what is even comes out even, after microseconds and after years.
+double media_seconds(double speed, ClockUs clock_us) noexcept {
+  constexpr ClockUs kSecond = 1'000'000;
+  return speed * static_cast<double>(clock_us / kSecond) + speed * static_cast<double>(clock_us % kSecond) / 1e6;
+}
+
+}  // namespace
+
 PlayRange Motion::range_of(const model::Clip& c) const noexcept {
   const PlayRange whole{0.0, c.duration_s(), c.settings.closed};
   if (!range) return whole;
@@ -40,7 +50,7 @@ std::optional<ClockUs> Motion::end_us(const PlayRange& r) const noexcept {
 }
 
 double Motion::phase_at(const PlayRange& r, ClockUs now_us) const noexcept {
-  const double phase = anchor_phase_s + (playing ? speed * seconds_between(anchor_us, now_us) : 0.0);
+  const double phase = anchor_phase_s + (playing ? media_seconds(speed, now_us - anchor_us) : 0.0);
   if (bound() == 0) return phase;
   const double total = std::max(total_s(r), 0.0);
   const auto end = end_us(r);

@@ -243,8 +243,9 @@ void Stage::group_succeeded(std::vector<Pending> entries) {
   }
   arm_timer();
   for (Pending& p : entries) {
-    p.done(std::move(p.answer));
+    // Told first: whoever subscribes after the answer hears of nothing that came before.
     listener_->edited(p.event);
+    p.done(std::move(p.answer));
   }
 }
 

@@ -92,8 +92,9 @@ void Stage::carry_out(const std::string& scene, const PlayersChange& change, Clo
   for (const std::size_t i : *concerned) (*players)[i].drop_fades(as_of_us);
   const auto view = std::make_shared<const SceneView>(SceneView{before->scene, std::move(players), next_serial_++});
   publish(scene, view);
-  done(PlayersAnswer{view, *concerned, as_of_us});
+  // Told first: whoever subscribes after the answer hears of nothing that came before.
   if (!concerned->empty()) listener_->players_changed(view, *concerned, as_of_us);
+  done(PlayersAnswer{view, *concerned, as_of_us});
   tell_starts(before, view, as_of_us);
   settle(as_of_us);  // a `once` of no length is over as it starts
   arm_timer();

@@ -296,7 +296,7 @@ const Damage kDamages[] = {
 };
 
 INSTANTIATE_TEST_SUITE_P(Damages, GltfRefusal, ::testing::ValuesIn(kDamages),
-                         [](const auto& instance) { return std::string(instance.param.name); });
+                         [](const auto& damage) { return std::string(damage.param.name); });
 
 TEST(GltfLimits, NoMemoryIsTakenForCountsThatNothingBacks) {
   // Zeros need no bytes in the file: their count is bound by the limits alone.

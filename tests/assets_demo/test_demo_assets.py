@@ -8,6 +8,7 @@ import os
 import sys
 import unittest
 
+from glb_file import GlbFile, moved
 from obj_file import ObjFile, png_pixels
 
 ASSETS = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "assets")
@@ -157,27 +158,54 @@ class Demo(unittest.TestCase):
             self.edits = json.load(file)
 
     def test_it_shows_loops_of_the_committed_assets(self):
-        added = [edit["params"] for edit in self.edits if edit["method"] == "actor.add"]
-        self.assertEqual([a["actor"] for a in added], ["octopus_linear", "octopus_catmull_rom", "barb"])
-        for actor in added:
+        added = self.params_of("actor.add")
+        self.assertEqual([a["actor"] for a in added], ["octopus_linear", "octopus_catmull_rom", "barb", "walker"])
+        for actor in added[:3]:
             self.assertTrue(actor["closed"])
             self.assertAlmostEqual(actor["duration"], LOOP_FRAMES[actor["asset"]] / actor["fps"], places=5)
 
+    def params_of(self, method):
+        return [edit["params"] for edit in self.edits if edit["method"] == method]
+
+    def test_the_walkers_markers_stand_where_its_feet_land(self):
+        """At a marker the foot of its name is the one in front, and comes down."""
+        walker = self.walker()
+        marked = [(m["clip"], m["name"]) for m in self.params_of("marker.add") if m["actor"] == "walker"]
+        self.assertEqual(sorted(marked), [(clip, side) for clip in ("run", "walk") for side in ("left", "right")])
+        for marker in self.params_of("marker.add"):
+            clip, foot, other = walker.clip(marker["clip"]), "foot_" + marker["name"][0], "foot_" + "lr"[marker["name"] == "left"]
+            before, now = (walker.places(clip, (marker["time"] + s) % clip.duration) for s in (-0.05, 0.0))
+            places = [pose[walker.node(foot)][1] for pose in (before, now)]
+            self.assertGreater(places[1][2], now[walker.node(other)][1][2] + 0.3)
+            self.assertGreater(places[0][1], places[1][1] + 0.01)
+
+    @staticmethod
+    def walker():
+        with open(os.path.join(ASSETS, "walker.glb"), "rb") as file:
+            return GlbFile(file.read())
+
     def test_no_two_actors_touch(self):
         """Their boxes over all poses, Catmull-Rom's overshoot included, stand apart on the ground."""
-        boxes = [self.ground_box(edit["params"]) for edit in self.edits if edit["method"] == "actor.add"]
+        boxes = [self.ground_box(actor) for actor in self.params_of("actor.add")]
         for i, a in enumerate(boxes):
             for b in boxes[:i]:
                 self.assertTrue(any(a[axis][1] < b[axis][0] or b[axis][1] < a[axis][0] for axis in (0, 1)), (a, b))
 
-    @staticmethod
-    def ground_box(actor):
-        keys = keyframes(actor["asset"])
-        shown = [p for after in range(len(keys)) for quarter in range(4)
-                 for p in blend(keys, catmull_rom(len(keys), after, quarter / 4))]
-        move, grow = actor["transform"]["translation"], actor["transform"].get("scale", [1, 1, 1])
-        return [(min(p[axis] for p in shown) * grow[axis] + move[axis], max(p[axis] for p in shown) * grow[axis] + move[axis])
-                for axis in (0, 2)]
+    def ground_box(self, actor):
+        shown = self.all_poses(actor["asset"])
+        transform = actor["transform"]
+        turn, grow = tuple(transform.get("rotation", (0, 0, 0, 1))), transform.get("scale", [1, 1, 1])
+        places = [moved(turn, transform["translation"], [x * s for x, s in zip(p, grow)]) for p in shown]
+        return [(min(p[axis] for p in places), max(p[axis] for p in places)) for axis in (0, 2)]
+
+    def all_poses(self, asset):
+        if asset == "walker.glb":
+            walker = self.walker()
+            clips = [walker.clip(name) for name in ("walk", "run", "wave")]
+            return [p for clip in clips for i in range(5) for p in walker.skinned(walker.places(clip, clip.duration * i / 5))]
+        keys = keyframes(asset)
+        return [p for after in range(len(keys)) for quarter in range(4)
+                for p in blend(keys, catmull_rom(len(keys), after, quarter / 4))]
 
 
 if __name__ == "__main__":

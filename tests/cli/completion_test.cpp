@@ -57,6 +57,7 @@ TEST(Completion, OffersTheWordsOfAnOption) {
   EXPECT_THAT(complete("tweenctl play --loop "), ElementsAre("once", "repeat", "ping_pong"));
   EXPECT_THAT(complete("tweenctl play --loop=p"), ElementsAre("ping_pong"));
   EXPECT_THAT(complete("tweenctl keyframe update 3 --easing "), ElementsAre("none"));
+  EXPECT_THAT(complete("tweenctl export a --format "), ElementsAre("glb", "obj_sequence"));
   EXPECT_THAT(complete("tweenctl seek "), IsEmpty());
 }
 

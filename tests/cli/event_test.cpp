@@ -34,6 +34,15 @@ TEST(Events, AreALineEach) {
             "scene.changed     scene main, revision 3, method edit.undo\n");
 }
 
+TEST(Events, OfMarkersNameTheMarkerAndWhere) {
+  const Json crossed{{"scene", "main"}, {"actor", "walker"}, {"clip", "walk"}, {"marker", 7},
+                     {"name", "left"},  {"time", 0.5},       {"at_us", 123}};
+  EXPECT_EQ(run_cli({subscribe(event("marker.crossed", crossed))}, {"events", "--count", "1"}).out,
+            "marker.crossed    scene main, walker walk: left at 0.5 s\n");
+  EXPECT_EQ(run_cli({subscribe(event("marker.crossed", crossed))}, {"wait", "marker", "--actor", "walker"}).out,
+            "marker.crossed    scene main, walker walk: left at 0.5 s\n");
+}
+
 TEST(Events, AreObjectsForPrograms) {
   const auto run = run_cli({subscribe(event("playback.ended", ended("box")))}, {"--json", "events", "--count", "1"});
   EXPECT_EQ(run.out, "{\"method\":\"playback.ended\",\"params\":{\"scene\":\"main\",\"actor\":\"box\",\"clip\":\"walk\"}}\n");

@@ -40,11 +40,14 @@ TEST(Output, EditsAreASentenceWithTheRevision) {
                    R"({"keyframe":3,"index":1,"time":2.5,"revision":9})"),
             "keyframe 3 added at 2.5 s (revision 9)\n");
   EXPECT_EQ(output({"undo"}, "edit.undo", "{}", R"({"revision":4,"undone":"actor.add"})"), "actor.add undone (revision 4)\n");
+  EXPECT_EQ(
+      output({"export", "a.glb"}, "asset.export", R"({"name":"a.glb","format":"glb"})", R"({"name":"a.glb","bytes":1200})"),
+      "a.glb saved: 1200 bytes\n");
   EXPECT_EQ(output({"remove", "box"}, "actor.remove", R"({"actor":"box"})", R"({"revision":5})"),
             "actor box removed (revision 5)\n");
   EXPECT_EQ(output({"add", "box", "--asset", "a.obj"}, "actor.add", R"({"actor":"box","asset":"a.obj"})",
                    R"({"actor":"box","clips":["default"],"vertices":8,"joints":0,"revision":6})"),
-            "actor box added: 8 vertices, clips default (revision 6)\n");
+            "actor box added: 8 vertices, 0 joints, clips default (revision 6)\n");
 }
 
 TEST(Output, ListsAreTables) {

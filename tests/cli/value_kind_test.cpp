@@ -45,6 +45,20 @@ TEST(ValueKind, ListsHaveTheRightLength) {
   EXPECT_EQ(why_not(numbers("", {3}), "1,,2"), "expected a number, found ''");
 }
 
+TEST(ValueKind, ListsMayHaveAnyLength) {
+  EXPECT_EQ(any_numbers("W").read("1"), Json::array({1.0}));
+  EXPECT_EQ(any_numbers("W").read("0,.5,-1"), (Json{0.0, 0.5, -1.0}));
+  EXPECT_EQ(why_not(any_numbers("W"), "1,"), "expected a number, found ''");
+}
+
+TEST(ValueKind, JsonStandsThereOrInAFile) {
+  std::istringstream in(R"({"a":2})");
+  EXPECT_EQ(json_or_file(in).read(R"({"a":1})"), (Json{{"a", 1}}));
+  EXPECT_EQ(json_or_file(in).read("@-"), (Json{{"a", 2}}));
+  EXPECT_EQ(why_not(json_or_file(in), "{a"), "expected JSON, found '{a'");
+  EXPECT_EQ(why_not(json_or_file(in), "@/no/such/file"), "can't read /no/such/file: No such file or directory");
+}
+
 TEST(ValueKind, WordsAreThoseOfTheShape) {
   EXPECT_EQ(word("once|repeat").read("repeat"), Json("repeat"));
   EXPECT_EQ(why_not(word("once|repeat"), "on"), "expected one of once, repeat, found 'on'");

@@ -56,6 +56,13 @@ TEST(CommandTable, EveryRowHasTheHandlerOfItsShape) {
   }
 }
 
+TEST(CommandTable, SchedulesPlaybackTheCameraAndActors) {
+  for (const Command& c : command_table()) {
+    const bool playback = c.name.starts_with("playback.") && c.name != "playback.get";
+    EXPECT_EQ(c.timed != nullptr, playback || c.name == "camera.set" || c.name == "actor.update") << c.name;
+  }
+}
+
 TEST(CommandTable, EveryParameterIsExplained) {
   for (const Command& c : command_table()) {
     for (const protocol::FieldInfo& f : c.params->fields) EXPECT_FALSE(f.doc.empty()) << c.name << " " << f.name;
@@ -75,7 +82,7 @@ TEST(CommandTable, EditsTakeRevisionAndRetryKey) {
 TEST(CommandTable, RolesAreThoseOfTheProtocolPage) {
   for (const Command& c : command_table()) {
     const bool admin = c.name == "scene.create" || c.name == "scene.remove";
-    const bool changes = c.is_edit() || c.shape == Shape::Players;
+    const bool changes = c.is_edit() || c.shape == Shape::Players || c.name == "schedule.cancel";
     EXPECT_EQ(c.role, admin ? Role::Admin : changes ? Role::Control : Role::View) << c.name;
   }
 }

@@ -170,7 +170,8 @@ class TestCase(unittest.TestCase):
             for clip in actor["clips"]:
                 at = {"scene": scene, "actor": actor["actor"], "clip": clip["clip"]}
                 keyframes[actor["actor"], clip["clip"]] = [
-                    (k, self.c.call("vertices.sample", **at, time=k["time"])["positions"])
+                    (k, actor["vertices"] and self.c.call("vertices.sample", **at, time=k["time"])["positions"],
+                     actor["joints"] and self.c.call("pose.sample", **at, time=k["time"])["joints"])
                     for k in self.c.call("keyframe.list", **at)["keyframes"]]
         return described, keyframes
 

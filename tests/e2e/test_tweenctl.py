@@ -105,6 +105,40 @@ class Session(Remote):
         self.assertEqual((self.player()["speed"], self.player()["loop"], self.player()["range"]), (-2, "ping_pong", [1, 2]))
         self.assertEqual(self.json("status")["players"], self.c.call("playback.get")["players"])
 
+    def test_markers_queues_and_schedules(self):
+        self.add_barb()
+        self.ctl("clip", "create", "still", "--duration", 1)
+        self.assertRegex(self.ctl("marker", "add", 0.5, "step"), r"^marker \d+ added: step at 0.5 s")
+        marker = self.c.call("marker.list")["markers"][0]["marker"]
+        self.assertIn("step", self.ctl("marker", "list"))
+        process = self.start("events")
+        self.ctl("queue", "default", "still:2:0.1")
+        self.assertEqual(self.player()["clip"], "default")
+        wait_until(lambda: self.player()["clip"] == "still", "the next clip")
+        self.ctl("stop")
+        process.terminate()
+        self.assertRegex(process.communicate(timeout=60)[0], rf"marker.crossed +.*marker {marker}, name step")
+        self.ctl("marker", "remove", marker)
+        self.assertEqual(self.ctl("marker", "list"), "no markers\n")
+
+        self.assertRegex(self.ctl("seek", 1, "--at", "+3600"), r"^scheduled as \d+ for the reading \d+\n$")
+        waiting = self.c.call("schedule.list")["scheduled"][0]
+        self.assertIn("playback.seek", self.ctl("schedule", "list"))
+        self.ctl("schedule", "cancel", waiting["scheduled"])
+        self.assertEqual(self.ctl("schedule", "list"), "nothing waits\n")
+        self.ctl("play", "--at", 1, "--late", "error", code=1)
+        self.ctl("camera", "--fit", "--at", "+0.01")
+        self.ctl("play", "--clip", "default", "--fade", 0.2)
+
+    def test_layers(self):
+        self.c.call("actor.add", actor="arm", skeleton={"joints": [{"name": "a"}, {"name": "b", "parent": "a"}]})
+        self.c.call("keyframe.add", pose={"a": {"translation": [1, 0, 0]}})
+        self.ctl("layer", "set", "l", "default", "--weight", 0.5, "--additive", "--mask", "a,b", "--fade", 0.1)
+        self.assertEqual(self.c.call("scene.describe")["actors"][0]["layers"],
+                         [{"layer": "l", "clip": "default", "weight": 0.5, "additive": True, "mask": ["a", "b"]}])
+        self.ctl("layer", "remove", "l")
+        self.assertEqual(self.c.call("scene.describe")["actors"][0]["layers"], [])
+
     def test_scenes(self):
         self.ctl("scene", "create", "two")
         self.assertIn("two", self.ctl("scenes"))

@@ -15,8 +15,8 @@ namespace {
 using animation::Channel;
 using animation::Property;
 
-// An arm along +Y: a shoulder at the origin and an elbow a metre above it, skinned to three points (two at the shoulder's side, one
-// at the tip), with a morph target that widens the tip.
+// An arm along +Y: a shoulder at the origin and an elbow a metre above it, skinned to three points (two at the shoulder's side,
+// one at the tip), with a morph target that widens the tip.
 
 glm::vec4 about_z(double angle) {
   return {0, 0, static_cast<float>(std::sin(angle / 2)), static_cast<float>(std::cos(angle / 2))};
@@ -40,7 +40,8 @@ ClipPtr posed(std::string name, std::vector<std::pair<double, std::vector<KeyedV
   clip.name = std::move(name);
   for (auto& [time_s, values] : keys) {
     clip.times_s.push_back(time_s);
-    clip.keyframes.push_back({static_cast<KeyframeId>(clip.times_s.size()), {}, {}, {}, std::make_shared<const PoseKey>(values)});
+    clip.keyframes.push_back(
+        {static_cast<KeyframeId>(clip.times_s.size()), {}, {}, {}, std::make_shared<const PoseKey>(values)});
   }
   return std::make_shared<const Clip>(std::move(clip));
 }
@@ -92,7 +93,8 @@ TEST(Evaluator, BonesCarryTheirVertices) {
 }
 
 TEST(Evaluator, MorphsComeBeforeBones) {
-  const Actor actor = actor_with({posed("both", {{0.0, {{{1, Property::Rotation}, about_z(M_PI / 2)}, {{0, Property::Weight}, {0.5F, 0, 0, 0}}}}})});
+  const Actor actor = actor_with(
+      {posed("both", {{0.0, {{{1, Property::Rotation}, about_z(M_PI / 2)}, {{0, Property::Weight}, {0.5F, 0, 0, 0}}}}})});
   const auto at = positions_of(actor, shown_clip(actor.clips[0], 0.0));
   // (0.5, 1) from the elbow, turned by a quarter: (-1, 0.5).
   EXPECT_NEAR(at[6], -1.0, 1e-6);
@@ -178,12 +180,16 @@ TEST(ClipBounds, HoldEverythingThatAPoseShows) {
   }
 }
 
-TEST(ClipBounds, OfASkeletonAloneHoldItsJoints) {
+TEST(ClipBounds, OfASkeletonAloneHoldItsBonesAsTheyAreDrawn) {
   Joint root{"root", -1, {}}, hand{"hand", 0, {}};
   hand.rest.translation = {0, 3, 0};
   const auto model = std::make_shared<const Model>(Model{{}, {}, *Skeleton::make({root, hand}), {}, {}});
   const Actor actor{"a", "skeleton", model, {}, {posed("default", {})}, {}};
-  EXPECT_EQ(clip_bounds(actor, actor.clips[0]), (Bounds{{0, 0, 0}, {0, 3, 0}}));
+  const Bounds bounds = clip_bounds(actor, actor.clips[0]);
+  for (int axis = 0; axis < 3; ++axis) {  // a tenth of the bone's length on all sides
+    EXPECT_NEAR(bounds.min[axis], -0.3F, 1e-6F);
+    EXPECT_NEAR(bounds.max[axis], axis == 1 ? 3.3F : 0.3F, 1e-6F);
+  }
 }
 
 }  // namespace

@@ -83,11 +83,17 @@ void expect_same(const Clip& a, const Clip& b) {
   for (std::size_t i = 0; i < a.keyframes.size(); ++i) {
     EXPECT_EQ(a.keyframes[i].interpolation, b.keyframes[i].interpolation);
     EXPECT_EQ(a.keyframes[i].easing, b.keyframes[i].easing);
-    if (a.keyframes[i].pose) EXPECT_EQ(a.keyframes[i].pose->hash(), b.keyframes[i].pose->hash());
-    if (a.keyframes[i].vertices) EXPECT_EQ(a.keyframes[i].vertices->hash(), b.keyframes[i].vertices->hash());
+    if (a.keyframes[i].pose) {
+      EXPECT_EQ(a.keyframes[i].pose->hash(), b.keyframes[i].pose->hash());
+    }
+    if (a.keyframes[i].vertices) {
+      EXPECT_EQ(a.keyframes[i].vertices->hash(), b.keyframes[i].vertices->hash());
+    }
   }
   ASSERT_EQ(a.channel_modes != nullptr, b.channel_modes != nullptr);
-  if (a.channel_modes) EXPECT_EQ(*a.channel_modes, *b.channel_modes);
+  if (a.channel_modes) {
+    EXPECT_EQ(*a.channel_modes, *b.channel_modes);
+  }
 }
 
 TEST(ModelBlob, ComesBackTheSame) {
@@ -138,7 +144,9 @@ TEST(ModelBlob, SurvivesAnyByte) {
         std::string other = bytes;
         other[i] = static_cast<char>(value);
         const auto read = read_model_blob(other);  // read or refused; what is read can be written
-        if (read) EXPECT_FALSE(write_model_blob(*read).bytes.empty());
+        if (read) {
+          EXPECT_FALSE(write_model_blob(*read).bytes.empty());
+        }
       }
     }
   }

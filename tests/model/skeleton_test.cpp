@@ -51,7 +51,8 @@ TEST(Skeleton, ParentsAlwaysComeFirst) {
       const std::uint32_t at = s->joint_at(place);
       EXPECT_EQ(s->place_of(at), place);
       const std::int32_t parent = s->joints()[at].parent;
-      const std::int32_t parent_place = parent < 0 ? -1 : static_cast<std::int32_t>(s->place_of(static_cast<std::uint32_t>(parent)));
+      const std::int32_t parent_place =
+          parent < 0 ? -1 : static_cast<std::int32_t>(s->place_of(static_cast<std::uint32_t>(parent)));
       EXPECT_EQ(s->parent_places()[place], parent_place);
       EXPECT_LT(parent_place, static_cast<std::int32_t>(place));
     }

@@ -44,7 +44,8 @@ TEST(Skin, RefusesWhatDoesNotFit) {
 }
 
 TEST(MorphTargets, AreCheckedAndViewed) {
-  const auto made = MorphTargets::make({{"smile", 0.25F, 1, {1, 0, 0}, {}, {}}, {"frown", 0, 0, {0, 3, 0, 0, 4, 0}, {}, {}}}, 2);
+  const auto made =
+      MorphTargets::make({{"smile", 0.25F, 1, {1, 0, 0}, {}, {}}, {"frown", 0, 0, {0, 3, 0, 0, 4, 0}, {}, {}}}, 2);
   ASSERT_TRUE(made) << made.error().message;
   EXPECT_THAT((*made)->default_weights(), ElementsAre(0.25F, 0.0F));
   EXPECT_EQ((*made)->views()[0].first_vertex, 1U);

@@ -131,12 +131,14 @@ int wrapped(TextureWrap wrap, int at) {
 }
 
 TEST_F(Materials, BeyondItsEdgesATextureIsRepeatedMirroredOrHeld) {
+  constexpr int kStep = 255 / (kTexels - 1);
   std::vector<std::uint8_t> texels;
   for (int i = 0; i < kTexels * kTexels; ++i) {
-    for (const int c : {255 * (i % kTexels) / (kTexels - 1), 255 * (i / kTexels) / (kTexels - 1), 128, 255}) {
+    for (const int c : {kStep * (i % kTexels), kStep * (i / kTexels), 128, 255}) {
       texels.push_back(static_cast<std::uint8_t>(c));
     }
   }
+  const auto center_px = [](int texel) { return std::size_t{kTexelPx} * static_cast<std::size_t>(texel) + kTexelPx / 2; };
   constexpr int kShown = 3 * kTexels;  // from one texture before to one behind
   constexpr std::uint32_t kSide = kShown * kTexelPx;
   constexpr std::array kWraps{TextureWrap::Repeat, TextureWrap::MirroredRepeat, TextureWrap::ClampToEdge};
@@ -152,10 +154,9 @@ TEST_F(Materials, BeyondItsEdgesATextureIsRepeatedMirroredOrHeld) {
       const Image image = draw({shape.item()}, {kSide, kSide});
       for (int row = 0; row < kShown; ++row) {
         for (int column = 0; column < kShown; ++column) {
-          const Rgb found = image.at(static_cast<std::size_t>(column * kTexelPx + kTexelPx / 2),
-                                     static_cast<std::size_t>(row * kTexelPx + kTexelPx / 2));
-          EXPECT_NEAR(found[0], 255 * wrapped(u, column - kTexels) / (kTexels - 1), 2) << "row " << row << ", " << column;
-          EXPECT_NEAR(found[1], 255 * wrapped(v, row - kTexels) / (kTexels - 1), 2) << "row " << row << ", " << column;
+          const Rgb found = image.at(center_px(column), center_px(row));
+          EXPECT_NEAR(found[0], kStep * wrapped(u, column - kTexels), 2) << "row " << row << ", " << column;
+          EXPECT_NEAR(found[1], kStep * wrapped(v, row - kTexels), 2) << "row " << row << ", " << column;
         }
       }
     }

@@ -88,6 +88,31 @@ test("a blend for one is its own, and null leaves it to the clip", () => {
   assert.deepEqual(asked(), [["actor.update", { scene: "main", actor: "a", interpolation: null }]]);
 });
 
+test("another clip is faded to, and goes on", async () => {
+  play(true, true);
+  actions.set_fade(0.5);
+  actions.play_clip("b", "run");
+  assert.deepEqual(asked(), [["playback.play", { scene: "main", actor: "b", clip: "run", fade: 0.5 }]]);
+  calls[0].resolve({ players: [{ ...player("b", true), clip: "run" }], server_time_us: 2 });
+  await settled();
+  assert.equal(store.state.players["b"].clip, "run");
+});
+
+test("another clip of one who stands still stands still", () => {
+  play(false);
+  actions.play_clip("a", "run");
+  assert.deepEqual(asked(), [
+    ["playback.play", { scene: "main", actor: "a", clip: "run" }],
+    ["playback.pause", { scene: "main", actor: "a" }],
+  ]);
+});
+
+test("a skeleton is shown of one actor", () => {
+  play(true, true);
+  actions.set_skeleton("b", true);
+  assert.deepEqual(asked(), [["actor.update", { scene: "main", actor: "b", show_skeleton: true }]]);
+});
+
 describe("the latest of many", () => {
   test("waits while one is on its way; those between are never sent", async () => {
     play(true);

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import { describe, test } from "node:test";
 import { ConnectionLost, RpcError } from "../../clients/web/connection.js";
 import { actor_detail } from "../../clients/web/controls/actor_list.js";
+import { markers_on_line } from "../../clients/web/controls/marker_ticks.js";
 import { error_text } from "../../clients/web/controls/messages.js";
 import { interpolation_choice } from "../../clients/web/controls/playback_options.js";
 import { belongs_to } from "../../clients/web/controls/shortcuts.js";
@@ -61,6 +62,12 @@ test("the blend shown is that of all concerned, or mixed", () => {
   assert.equal(interpolation_choice(state(null, null, null)), "");
   assert.equal(interpolation_choice(state(null, "step", null)), "mixed");
   assert.equal(interpolation_choice(state("a", "step", null)), "step");
+});
+
+test("markers beyond the end of the line are not on it", () => {
+  const at = (...times) => times.map((time, marker) => ({ marker, time, name: "m" }));
+  assert.deepEqual(markers_on_line(at(0, 1, 1.5), 1).map((m) => m.time), [0, 1]);
+  assert.deepEqual(markers_on_line(at(0), 0), []);
 });
 
 describe("the meter", () => {

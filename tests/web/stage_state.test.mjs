@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { describe, test } from "node:test";
-import { StageStore, initial_state, lead_player, reduce, selected_players } from "../../clients/web/stage_state.js";
+import { StageStore, initial_state, lead_markers, lead_player, reduce, selected_players } from "../../clients/web/stage_state.js";
 
 const player = (actor, changes = {}) => ({
   actor, clip: "c", playing: true, time: 1, speed: 1, loop: "repeat", range: [0, 4], duration: 4, ...changes,
@@ -113,6 +113,26 @@ describe("who is meant", () => {
   test("nobody, where there is nobody", () => {
     assert.equal(lead_player(after()), null);
     assert.deepEqual(selected_players(after()), []);
+  });
+});
+
+describe("markers", () => {
+  const list = [{ marker: 7, time: 0.5, name: "left" }];
+  const markers = (actor, clip) => ({ type: "markers", actor, clip, list });
+  test("are those of the clip that the lead player plays", () => {
+    assert.deepEqual(lead_markers(after(...kTwo, markers("a", "c"))), list);
+    assert.deepEqual(lead_markers(after(...kTwo, markers("a", "c"), { type: "selected", actor: "b" })), []);
+  });
+  test("of another clip, or that nobody has told, are none", () => {
+    assert.deepEqual(lead_markers(after(...kTwo, markers("a", "other"))), []);
+    assert.deepEqual(lead_markers(after(...kTwo)), []);
+    assert.deepEqual(lead_markers(after()), []);
+  });
+  test("that are crossed twice are news twice", () => {
+    const crossed = { type: "crossed", actor: "a", clip: "c", marker: 7 };
+    const once = after(...kTwo, crossed);
+    assert.deepEqual(once.crossed, { actor: "a", clip: "c", marker: 7 });
+    assert.notEqual(reduce(once, crossed).crossed, once.crossed);
   });
 });
 

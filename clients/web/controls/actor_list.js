@@ -6,6 +6,7 @@
  * @import {ActorMessage} from "../protocol_types.js"
  */
 import { element, icon } from "../dom.js";
+import { clip_picker, show_current_clips } from "./clip_picker.js";
 
 /**
  * @param {ActorMessage} actor
@@ -57,21 +58,40 @@ export function show_actor_list(store, actions) {
     return button;
   }
 
+  /** @param {ActorMessage} actor */
+  function bones({ actor, show_skeleton }) {
+    const button = Object.assign(document.createElement("button"), { type: "button", className: "quiet square bones" });
+    button.dataset["key"] = `bones:${actor}`;
+    button.setAttribute("aria-pressed", String(show_skeleton));
+    button.setAttribute("aria-label", `Show the skeleton of ${actor}`);
+    button.title = `${show_skeleton ? "Hide" : "Show"} the skeleton`;
+    button.append(icon("bone"));
+    button.addEventListener("click", () => void actions.set_skeleton(actor, !show_skeleton));
+    return button;
+  }
+
   /** @type {unknown[]} what the list was made of */
   let made_of = [];
   store.subscribe((state) => {
-    if (made_of[0] === state.actors && made_of[1] === state.selected) return; // players change far more often
+    if (made_of[0] === state.actors && made_of[1] === state.selected) {
+      show_current_clips(list, state); // players change far more often
+      return;
+    }
     made_of = [state.actors, state.selected];
     const focused = document.activeElement instanceof HTMLElement ? document.activeElement.dataset["key"] : undefined;
     const rows = state.actors.map((actor) => {
       const row = document.createElement("li");
       row.classList.toggle("hidden_actor", !actor.visible);
-      row.append(choice(actor.actor, actor.actor, actor_detail(actor), state.selected === actor.actor), eye(actor));
+      row.append(choice(actor.actor, actor.actor, actor_detail(actor), state.selected === actor.actor));
+      if (actor.clips.length > 1) row.append(clip_picker(actor, store, actions));
+      if (actor.joints.length > 0) row.append(bones(actor));
+      row.append(eye(actor));
       return row;
     });
     const all = document.createElement("li");
     all.append(choice(null, "All", state.actors.length === 1 ? "1 actor" : `${state.actors.length} actors`, state.selected === null));
     list.replaceChildren(all, ...rows);
+    show_current_clips(list, state);
     // Made anew, but not under the feet of who was there.
     if (focused) /** @type {HTMLElement | null} */ (list.querySelector(`[data-key="${CSS.escape(focused)}"]`))?.focus();
   });

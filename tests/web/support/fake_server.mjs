@@ -34,6 +34,7 @@ const kDuration = 5 / 3;
 const now_us = () => Math.round(Number(process.hrtime.bigint() / 1000n));
 
 // --------------------------------------------------------------------------------------------------------- the document
+const clip_of = (clip) => ({ clip, type: "vertex", keyframes: 5, duration: kDuration, closed: false });
 const scene = {
   scene: "main",
   revision: 1,
@@ -45,13 +46,18 @@ const scene = {
     visible: true,
     vertices: 78,
     triangles: 26,
-    clips: [{ clip: "default", type: "vertex", keyframes: 5, duration: kDuration, closed: false }],
+    show_skeleton: false,
+    joints: [],
+    clips: [clip_of("default")],
   })),
 };
-const players = values.load.map((actor) => ({
+const player_of = (actor) => ({
   actor, clip: "default", playing: Boolean(values.play), time: 0, speed: 1, loop: "repeat", range: [0, kDuration],
   duration: kDuration, at_us: now_us(), returning: false,
-}));
+});
+const players = values.load.map(player_of);
+/** Of all clips together: {clip, marker, time, name}. */
+const markers = [];
 
 /** Brings a player to now; changes what is given. */
 function change(player, changes) {
@@ -125,10 +131,11 @@ const playback = (how) => (params) => {
 };
 const wrapped = (time) => (time >= 0 && time <= kDuration ? time : ((time % kDuration) + kDuration) % kDuration);
 
-function update_actor({ actor, interpolation, visible }) {
+function update_actor({ actor, interpolation, visible, show_skeleton }) {
   const found = scene.actors.find((a) => a.actor === actor) ?? scene.actors[0];
   if (interpolation !== undefined) found.interpolation = interpolation;
   if (visible !== undefined) found.visible = visible;
+  if (show_skeleton !== undefined) found.show_skeleton = show_skeleton;
 }
 function edited(method) {
   scene.revision += 1;
@@ -144,8 +151,8 @@ const handlers = {
   "scene.describe": () => scene,
   "events.subscribe": (_, client) => void (client.subscribed = true),
   "playback.get": (params) => message_of(chosen(params)),
-  "playback.play": playback((p) => {
-    change(p, { playing: true });
+  "playback.play": playback((p, { clip = p.clip }) => {
+    change(p, { playing: true, ...(clip === p.clip ? {} : { clip, time: 0 }) });
     if (p.loop === "once" && p.time === kDuration) p.time = 0;
   }),
   "playback.pause": playback((p) => change(p, { playing: false })),
@@ -167,6 +174,25 @@ const handlers = {
   "edit.apply": ({ edits }) => {
     for (const edit of edits) update_actor(edit.params);
     return { ...edited("edit.apply"), results: [] };
+  },
+  "clip.create": ({ clip }) => {
+    scene.actors[0].clips.push(clip_of(clip));
+    return edited("clip.create");
+  },
+  "keyframe.add": () => edited("keyframe.add"),
+  "marker.list": ({ clip }) => ({ markers: markers.filter((m) => m.clip === clip).map(({ clip: _, ...m }) => m) }),
+  "marker.add": ({ clip, time, name }) => {
+    markers.push({ clip, marker: markers.length + 1, time, name });
+    return { marker: markers.length, ...edited("marker.add") };
+  },
+  "actor.add": ({ actor, skeleton }) => {
+    const { joints } = skeleton;
+    scene.actors.push({
+      actor, source: "skeleton", interpolation: null, visible: true, show_skeleton: false, vertices: 0, triangles: 0, joints,
+      clips: [clip_of("default")],
+    });
+    players.push(player_of(actor));
+    return edited("actor.add");
   },
   "stream.open": ({ width, height, rate, camera }, client) => {
     const stream = client.next_stream++;
@@ -202,6 +228,21 @@ function packet(stream, at_us) {
   return Buffer.concat([head, payload]);
 }
 
+/** Tells of the markers that a player has passed since it was asked last; forwards only. */
+function tell_crossings() {
+  for (const p of players) {
+    const time = time_at(p, now_us());
+    const before = p.told ?? time;
+    p.told = time;
+    if (!p.playing) continue;
+    for (const { clip, marker, name, time: at } of markers) {
+      const crossed = time >= before ? before < at && at <= time : before < at || at <= time;
+      if (clip !== p.clip || !crossed) continue;
+      tell("marker.crossed", { scene: "main", actor: p.actor, clip, marker, name, time: at, at_us: now_us() });
+    }
+  }
+}
+
 function end_what_has_run_out() {
   for (const p of players) {
     const time = time_at(p, now_us());
@@ -212,6 +253,7 @@ function end_what_has_run_out() {
 }
 
 setInterval(() => {
+  tell_crossings();
   end_what_has_run_out();
   for (const client of clients) {
     for (const stream of client.streams.values()) {
