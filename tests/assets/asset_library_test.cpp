@@ -58,8 +58,9 @@ TEST_F(AssetLibraryTest, ListsFilesAndSequencesByName) {
   folder_.write("root/.a.obj", "1");
   folder_.write("root/model.glb", "1");
   folder_.make_folder("root/empty");
-  EXPECT_EQ(listed(library()),
-            "loose_1.obj obj 1, props/chair/chair.obj obj 1, walk obj_sequence 7, walk/base.OBJ obj 5, z.obj obj 2");
+  EXPECT_EQ(
+      listed(library()),
+      "loose_1.obj obj 1, model.glb glb 1, props/chair/chair.obj obj 1, walk obj_sequence 7, walk/base.OBJ obj 5, z.obj obj 2");
 }
 
 TEST_F(AssetLibraryTest, ListsNothingOfNothing) {
@@ -150,12 +151,12 @@ TEST_F(AssetLibraryTest, NamesThatAreNoAssetAreNotFound) {
 }
 
 TEST_F(AssetLibraryTest, OtherFilesAndFoldersAreBadAssets) {
-  folder_.write("root/a.glb", "glTF");
+  folder_.write("root/a.fbx", "Kaydara");
   folder_.make_folder("root/empty");
-  for (const char* name : {"a.glb", "empty"}) {
+  for (const char* name : {"a.fbx", "empty"}) {
     const Error error = error_of(library(), name);
     EXPECT_EQ(error.code, ErrorCode::BadAsset) << name;
-    EXPECT_THAT(error.message, AllOf(HasSubstr("a .obj file or a folder of NAME_000000.obj"), HasSubstr(name)));
+    EXPECT_THAT(error.message, AllOf(HasSubstr("a .glb, .gltf or .obj file, or a folder of NAME_000000.obj"), HasSubstr(name)));
   }
 }
 

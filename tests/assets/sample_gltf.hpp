@@ -105,7 +105,7 @@ class GltfBuilder {
 };
 
 inline Result<std::string> no_side_file(std::string_view name, std::size_t) {
-  return fail(ErrorCode::NotFound, "found no " + std::string(name));
+  return fail(ErrorCode::NotFound, "expected a file, found no " + std::string(name));
 }
 
 inline Result<model::ImportedModel> try_read(const std::string& bytes, const Limits& limits = {}) {
