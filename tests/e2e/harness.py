@@ -172,7 +172,7 @@ class TestCase(unittest.TestCase):
                 keyframes[actor["actor"], clip["clip"]] = [
                     (k, actor["vertices"] and self.c.call("vertices.sample", **at, time=k["time"])["positions"],
                      actor["joints"] and self.c.call("pose.sample", **at, time=k["time"])["joints"])
-                    for k in self.c.call("keyframe.list", **at)["keyframes"]]
+                    for k in self.c.call("keyframe.list", **at)["keyframes"]] + self.c.call("marker.list", **at)["markers"]
         return described, keyframes
 
     @contextlib.contextmanager

@@ -11,6 +11,9 @@ class Undo(harness.TestCase):
     def setUp(self):
         super().setUp()
         self.keys = self.add_moving()
+        self.c.call("clip.create", clip="over")
+        self.c.call("layer.set", layer="top", clip="over")
+        self.marker = self.c.call("marker.add", time=0.5, name="here")["marker"]
         self.c.call("clip.create", clip="second", keys=self.keys[::-1])
 
     def edits(self):
@@ -28,7 +31,9 @@ class Undo(harness.TestCase):
             ("clip.update", {"clip": "default", "interpolation": "step"}), ("clip.remove", {"clip": "second"}),
             ("clip.remove", {"clip": "default"}), ("camera.set", {"eye": [9, 8, 7]}), ("camera.set", {"fit": True}),
             ("camera.set", {"orbit": {"azimuth": 1, "elevation": 1, "distance": 3}}), ("light.set", {"ambient": 0.75, "position": [1, 1, 1]}),
-            ("scene.update", {"background": [1, 0, 0], "grid": True}),
+            ("scene.update", {"background": [1, 0, 0], "grid": True}), ("layer.set", {"layer": "new", "clip": "over", "weight": 0.5}),
+            ("layer.set", {"layer": "top", "clip": "over", "additive": True}), ("layer.remove", {"layer": "top"}),
+            ("marker.add", {"time": 1, "name": "there"}), ("marker.remove", {"marker": self.marker}),
             ("edit.apply", {"edits": [{"method": "keyframe.add", "params": KEY}, {"method": "actor.remove", "params": {"actor": "tri"}},
                                       {"method": "actor.add", "params": {"actor": "tri", "mesh": TRIANGLE}},
                                       {"method": "camera.set", "params": {"fov_y": 2}}]}),

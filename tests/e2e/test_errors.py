@@ -15,7 +15,10 @@ GOOD = {
     "playback.get": {}, "camera.set": {"eye": [1, 2, 3]}, "light.set": {"ambient": 1}, "vertices.sample": {},
     "frame.render": {"width": 8, "height": 8},
     "stream.open": {"kind": "vertices"}, "stream.update": {"stream": 1, "rate": 5}, "stream.close": {"stream": 1},
-    "events.subscribe": {}, "events.unsubscribe": {},
+    "events.subscribe": {}, "events.unsubscribe": {}, "pose.set": {"actor": "rig", "pose": {}}, "pose.clear": {}, "pose.sample": {},
+    "playback.queue": {"clips": [{"clip": "second"}]}, "marker.add": {"time": 1, "name": "here"}, "marker.remove": {"marker": 1},
+    "marker.list": {}, "layer.set": {"layer": "new", "clip": "second"}, "layer.remove": {"layer": "top"}, "schedule.list": {},
+    "schedule.cancel": {"scheduled": 1}, "asset.export": {"format": "glb", "name": "out.glb"},
 }
 # None of these is good for a parameter of another type.
 SAMPLES = {"string": "¿", "number": 1.5, "boolean": True, "array": [[]], "object": {"¿": 1}}
@@ -92,7 +95,7 @@ class Errors(harness.TestCase):
                         self.refused(-32001, method, path=f"params.{name}", **GOOD[method] | {name: "none"})
 
     def test_methods_that_are_not_there(self):
-        for method in ("no.such", "", "server", "SERVER.PING", "server.ping ", "pose.set", "rpc.", "__class__"):
+        for method in ("no.such", "", "server", "SERVER.PING", "server.ping ", "pose.get", "rpc.", "__class__"):
             error = self.refused(-32601, method)
             self.assertTrue(error.message)
 

@@ -117,7 +117,7 @@ class Session(Remote):
         wait_until(lambda: self.player()["clip"] == "still", "the next clip")
         self.ctl("stop")
         process.terminate()
-        self.assertRegex(process.communicate(timeout=60)[0], rf"marker.crossed +.*marker {marker}, name step")
+        self.assertRegex(process.communicate(timeout=60)[0], r"marker.crossed +scene main, barb default: step at 0.5 s")
         self.ctl("marker", "remove", marker)
         self.assertEqual(self.ctl("marker", "list"), "no markers\n")
 
