@@ -135,7 +135,11 @@ model::ClipPtr poses(const char* name, double length_s) {
   clip->name = name;
   for (const double t : {0.0, length_s}) {
     clip->times_s.push_back(t);
-    clip->keyframes.push_back({static_cast<model::KeyframeId>(clip->times_s.size()), {}, {}, nullptr, std::make_shared<const model::PoseKey>(std::vector<model::KeyedValue>{})});
+    clip->keyframes.push_back({static_cast<model::KeyframeId>(clip->times_s.size()),
+                               {},
+                               {},
+                               nullptr,
+                               std::make_shared<const model::PoseKey>(std::vector<model::KeyedValue>{})});
   }
   return clip;
 }
@@ -143,8 +147,7 @@ model::ClipPtr poses(const char* name, double length_s) {
 model::ActorPtr layered(std::vector<model::Layer> layers) {
   auto actor = std::make_shared<model::Actor>();
   actor->name = "actor";
-  actor->model = std::make_shared<const model::Model>(
-      model::Model{{}, {}, *model::Skeleton::make({{"root", -1, {}}}), {}, {}});
+  actor->model = std::make_shared<const model::Model>(model::Model{{}, {}, *model::Skeleton::make({{"root", -1, {}}}), {}, {}});
   actor->clips = {poses("base", 2.0), poses("wave", 0.75)};
   actor->layers = std::move(layers);
   return actor;
