@@ -18,8 +18,9 @@ void add_marker_commands(CommandSet& commands) {
       .argument("ID", "marker", integer("ID"), "as `marker list` says")
       .requests("marker.remove", "marker {marker} removed");
   with_clip(with_actor(commands.add("marker list", "The markers of a clip.").in_scene()))
-      .requests("marker.list",
-                [](std::ostream& out, const Json&, const Json& result) { print_rows(out, result.at("markers"), "no markers"); });
+      .requests("marker.list", [](std::ostream& out, const Json&, const Json& result) {
+        print_rows(out, result.at("markers"), "no markers");
+      });
 }
 
 }  // namespace tweend::cli

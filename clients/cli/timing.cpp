@@ -25,7 +25,8 @@ ValueKind moment() {
 
 Command& with_timing(Command& command) {
   return command.option("--at", own("at"), moment(), "carry it out as of this reading of the server's clock, in microseconds")
-      .option("--late", "late", word("run|error"), "what becomes of it where that is past: run it now (the default), or refuse");
+      .option("--late", "late", word("run|error"),
+              "what becomes of it where that is past: run it now (the default), or refuse");
 }
 
 Json timed_params(Session& session, const Arguments& arguments) {

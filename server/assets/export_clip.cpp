@@ -78,7 +78,7 @@ ExportTrack side_by_side(const Tracks& weights, const std::vector<float>& others
 
 /// Weights that are keyed apart: they have to share their times, so they are baked.
 Result<GlbSamples> merged(const Tracks& weights, const std::vector<float>& others, const ClipSpan& span,
-                           const BakeLimits& limits) {
+                          const BakeLimits& limits) {
   BakeSource source{others.size(), false, {}, {}};
   source.at = [&](double time_s, std::span<double> out) {
     std::ranges::copy(others, out.begin());
@@ -95,7 +95,7 @@ Result<GlbSamples> merged(const Tracks& weights, const std::vector<float>& other
 }
 
 Result<GlbSamples> weight_samples(const Tracks& weights, const std::vector<float>& others, const ClipSpan& span,
-                                   const BakeLimits& limits) {
+                                  const BakeLimits& limits) {
   const ExportTrack& first = weights.begin()->second;
   const bool alike = std::ranges::all_of(
       weights, [&](const auto& named) { return named.second.times_s == first.times_s && named.second.modes == first.modes; });

@@ -188,7 +188,7 @@ Result<GlbSamples> glb_samples(const ExportTrack& track, const ClipSpan& clip, c
   if (track.times_s.size() == 1) {
     // A spline needs two keys, and nothing blends with itself.
     return GlbSamples{mode == Interpolation::Step ? GlbBlend::Step : GlbBlend::Linear, float_times(track.times_s),
-                       track.values};
+                      track.values};
   }
   const bool curve_crosses_end = clip.closed && track.times_s.front() > 0.0;
   if (mode == Interpolation::Step) return plain(track, clip, GlbBlend::Step);

@@ -63,9 +63,9 @@ std::size_t add_view(GlbDocument& document, std::span<const std::byte> bytes, Gl
 std::size_t add_floats(GlbDocument& document, std::span<const float> values, GlbShape shape, GlbUse use, bool bounds) {
   const std::size_t width = numbers_of(shape);
   GlbAccessor accessor{.view = add_view(document, std::as_bytes(values), use),
-                        .shape = shape,
-                        .component = GlbComponent::F32,
-                        .count = values.size() / width};
+                       .shape = shape,
+                       .component = GlbComponent::F32,
+                       .count = values.size() / width};
   if (bounds) tell_bounds(values, width, accessor);
   document.accessors.push_back(std::move(accessor));
   return document.accessors.size() - 1;
@@ -89,9 +89,8 @@ std::size_t add_indices(GlbDocument& document, std::span<const std::uint32_t> in
 
 std::size_t add_joints(GlbDocument& document, std::span<const std::uint16_t> joints) {
   const bool narrow = *std::ranges::max_element(joints) <= 0xFF;
-  return add_whole<std::uint8_t, std::uint16_t>(document, joints, narrow,
-                                                {.shape = GlbShape::Vec4, .count = joints.size() / 4}, GlbComponent::U8,
-                                                GlbComponent::U16, GlbUse::Vertices);
+  return add_whole<std::uint8_t, std::uint16_t>(document, joints, narrow, {.shape = GlbShape::Vec4, .count = joints.size() / 4},
+                                                GlbComponent::U8, GlbComponent::U16, GlbUse::Vertices);
 }
 
 }  // namespace tweend::assets

@@ -31,14 +31,12 @@ Piece piece_of(const model::Mesh& mesh, const model::MeshPart& part, bool whole)
     std::iota(piece.vertices.begin(), piece.vertices.end(), 0U);
     return piece;
   }
-  std::vector<std::uint32_t> place(mesh.vertex_count(), 0);
-  for (const std::uint32_t i : indices) place[i] = 1;
-  for (std::uint32_t v = 0; v < place.size(); ++v) {
-    if (place[v] == 0) continue;
-    place[v] = static_cast<std::uint32_t>(piece.vertices.size());
-    piece.vertices.push_back(v);
+  piece.vertices = piece.indices;
+  std::ranges::sort(piece.vertices);
+  piece.vertices.erase(std::ranges::unique(piece.vertices).begin(), piece.vertices.end());
+  for (std::uint32_t& i : piece.indices) {
+    i = static_cast<std::uint32_t>(std::ranges::lower_bound(piece.vertices, i) - piece.vertices.begin());
   }
-  for (std::uint32_t& i : piece.indices) i = place[i];
   return piece;
 }
 

@@ -6,6 +6,7 @@
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <chrono>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -25,9 +26,10 @@ namespace http = boost::beast::http;
 
 constexpr auto kAwait = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kHeaderBytes = 16U << 10U;
+constexpr std::size_t kSlowestBytesPerSecond = 64U << 10U;  ///< of clients that read a large file
 
 asio::awaitable<bool> write(beast::tcp_stream& stream, const HttpResponse& response, Metrics& metrics) {
-  stream.expires_after(kHttpIdle);
+  stream.expires_after(kHttpIdle + std::chrono::seconds(response.body().size() / kSlowestBytesPerSecond));
   const auto [error, bytes] = co_await http::async_write(stream, response, kAwait);
   add(metrics.bytes_sent_total, static_cast<std::int64_t>(bytes));
   co_return !error;

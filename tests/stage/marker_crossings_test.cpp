@@ -156,7 +156,8 @@ TEST(StartCrossings, AtAnEndAreThoseItIsOnAndThoseItRunsOver) {
   const Markers markers = markers_at({0.0, 2.0});
   EXPECT_EQ(which(at_start(running(Loop::Repeat, 1.0, 0.0), kTwoSeconds, markers)), (Which{0}));
   EXPECT_EQ(which(at_start(running(Loop::Repeat, -1.0, 2.0), kTwoSeconds, markers)), (Which{1}));
-  EXPECT_EQ(which(at_start(running(Loop::Repeat, 1.0, 2.0), kTwoSeconds, markers)), (Which{1, 0})) << "held at out, then around";
+  EXPECT_EQ(which(at_start(running(Loop::Repeat, 1.0, 2.0), kTwoSeconds, markers)), (Which{1, 0}))
+      << "held at out, then around";
   EXPECT_EQ(which(at_start(running(Loop::Repeat, -1.0, 0.0), kTwoSeconds, markers)), (Which{0, 1}));
   EXPECT_EQ(which(at_start(running(Loop::Once, 1.0, 0.0), kTwoSeconds, markers)), (Which{0}));
   EXPECT_EQ(which(at_start(running(Loop::Once, -1.0, 2.0), kTwoSeconds, markers)), (Which{1}));
@@ -328,7 +329,8 @@ TEST(Crossings, SurviveChangesOnTopOfThem) {
     for (int change = 0; change < 40; ++change) {
       motion.speed = sign * uniform(0.1, 20.0);
       const auto ahead = next_crossing_us(motion, range, markers, now);
-      const ClockUs next = ahead && change % 2 == 0 ? *ahead - (change % 4 == 0 ? 1 : 0) : now + static_cast<ClockUs>(uniform(1.0, 4e5));
+      const ClockUs next =
+          ahead && change % 2 == 0 ? *ahead - (change % 4 == 0 ? 1 : 0) : now + static_cast<ClockUs>(uniform(1.0, 4e5));
       if (next <= now) continue;
       count += crossed(motion, range, markers, now, next).size();
       way += std::abs(motion.speed) * seconds_between(now, next);

@@ -91,7 +91,8 @@ TEST(PlayerQueue, BackwardsPlaysEachFromItsEnd) {
 TEST(PlayerQueue, PassesOverWhatHasNoLengthOrIsGone) {
   const model::Actor actor = actor_of({clip("a", 1.0), clip("still", 0.0), clip("b", 1.0)});
   Player player = player_on(actor);
-  player.start_queue(actor, {{.clip = "still", .repeat = 5}, {.clip = "a"}, {.clip = "gone"}, {.clip = "still"}, {.clip = "b"}}, 0);
+  player.start_queue(actor, {{.clip = "still", .repeat = 5}, {.clip = "a"}, {.clip = "gone"}, {.clip = "still"}, {.clip = "b"}},
+                     0);
   expect_state(state_at(actor, player, 500'000), {"a", 0.5, true}, "a");
   expect_state(state_at(actor, player, 1'500'000), {"b", 0.5, true}, "b");
 }
@@ -189,10 +190,12 @@ TEST(RunPlayer, InPartsIsTheWhole) {
   const auto uniform = [&random](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
   for (int run = 0; run < 300; ++run) {
     const double a_s = uniform(0.01, 1.0);
-    const model::Actor actor = actor_of({clip("a", a_s, {0.0, uniform(0.0, a_s), a_s}), clip("b", uniform(0.3, 1.0), {0.0, 0.1, 0.2})});
+    const model::Actor actor =
+        actor_of({clip("a", a_s, {0.0, uniform(0.0, a_s), a_s}), clip("b", uniform(0.3, 1.0), {0.0, 0.1, 0.2})});
     Player player = player_on(actor, uniform(-9.0, 9.0));
     std::vector<QueueEntry> entries;
-    for (int i = 0; i < 5; ++i) entries.push_back({i % 2 == 0 ? "a" : "b", kLoops[random() % 3], 1 + static_cast<int>(random() % 3), 0.0});
+    for (int i = 0; i < 5; ++i)
+      entries.push_back({i % 2 == 0 ? "a" : "b", kLoops[random() % 3], 1 + static_cast<int>(random() % 3), 0.0});
     player.start_queue(actor, entries, 0);
     const Course whole = run_player(actor, player, 0, 4 * kSecond, 10'000);
     Player part = player;

@@ -159,7 +159,9 @@ TEST_F(StageSchedule, CanBeCancelledOnce) {
 }
 
 TEST_F(StageSchedule, TellsWhenItFails) {
-  const TimedAct fails = [](ClockUs, const EditDone& done) { done(fail(ErrorCode::NotFound, "no such actor", "params.actor")); };
+  const TimedAct fails = [](ClockUs, const EditDone& done) {
+    done(fail(ErrorCode::NotFound, "no such actor", "params.actor"));
+  };
   ASSERT_TRUE(schedule({steady_now_us() + 1'000, false}, fails));
   stage.wait_for(Kind::ScheduleFailed, 1);
   const auto told = stage.told().back();
