@@ -18,7 +18,7 @@
 #include "bench/support/character_skin.hpp"
 #include "bench/support/ratio.hpp"
 #include "bench/support/server_process.hpp"
-#include "bench/support/three_mixer.hpp"
+#include "bench/support/three_process.hpp"
 #include "server/animation/local_to_model.hpp"
 #include "tests/animation/reference_track.hpp"
 
@@ -158,7 +158,7 @@ void race_three(bool moves, std::vector<bench::Claim>& claims) {
   const std::string file =
       std::filesystem::temp_directory_path() / ("tweend-bench-clip-" + std::to_string(::getpid()) + ".json");
   clip.write_json(file);
-  bench::ThreeMixer three(file);
+  bench::ThreeProcess three("mixer.mjs", file);
   Character one(clip);
   for (const double t : {0.4, 7.77, 19.3}) {
     one.step(tracks, t);
@@ -219,11 +219,11 @@ int main() {
     for (const std::size_t joints : {20U, 67U, 250U}) race_glm(joints, moves, jumps_s, claims);
   }
   race_crowd(jumps_s, claims);
-  if (bench::ThreeMixer::is_installed()) {
+  if (bench::ThreeProcess::is_installed()) {
     std::printf("\nbeside three.js, ns a joint\n");
     for (const bool moves : {true, false}) race_three(moves, claims);
   } else {
-    std::printf("\nthree.js is not measured: expected Node, and three.js in bench/three_mixer; `./dev bench` installs it\n");
+    std::printf("\nthree.js is not measured: expected Node, and three.js in bench/three; `./dev bench` installs it\n");
   }
   race_skinning();
   return bench::report(claims) ? 0 : 1;

@@ -23,7 +23,7 @@ struct CharacterClip {
   [[nodiscard]] animation::TrackSet packed() const;
   /// A pose of this many joints at rest, as memory to sample into.
   [[nodiscard]] animation::Pose rest_pose() const;
-  /// For three_mixer: parents, rest, times and keys, xyzw, as JSON.
+  /// For three/mixer.mjs: parents, rest, times and keys, xyzw, as JSON.
   void write_json(const std::string& path) const;
 
   double duration_s;

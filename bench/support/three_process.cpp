@@ -1,4 +1,4 @@
-#include "bench/support/three_mixer.hpp"
+#include "bench/support/three_process.hpp"
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -13,15 +13,15 @@
 namespace tweend::bench {
 namespace {
 
-const std::string kFolder = TWEEND_THREE_MIXER_DIR;
+const std::string kFolder = TWEEND_THREE_DIR;
 
 }  // namespace
 
-bool ThreeMixer::is_installed() {
+bool ThreeProcess::is_installed() {
   return std::filesystem::exists(kFolder + "/node_modules/three") && std::system("command -v node >/dev/null") == 0;
 }
 
-ThreeMixer::ThreeMixer(const std::string& clip_json) {
+ThreeProcess::ThreeProcess(const std::string& script, const std::string& file) {
   int questions[2];
   int answers[2];
   if (::pipe(questions) != 0 || ::pipe(answers) != 0) give_up(std::strerror(errno));
@@ -31,7 +31,7 @@ ThreeMixer::ThreeMixer(const std::string& clip_json) {
     ::dup2(questions[0], STDIN_FILENO);
     ::dup2(answers[1], STDOUT_FILENO);
     for (const int end : {questions[0], questions[1], answers[0], answers[1]}) ::close(end);
-    ::execlp("node", "node", (kFolder + "/mixer.mjs").c_str(), clip_json.c_str(), nullptr);
+    ::execlp("node", "node", (kFolder + "/" + script).c_str(), file.c_str(), nullptr);
     ::_exit(127);
   }
   ::close(questions[0]);
@@ -40,13 +40,13 @@ ThreeMixer::ThreeMixer(const std::string& clip_json) {
   from_ = ::fdopen(answers[0], "r");
 }
 
-ThreeMixer::~ThreeMixer() {
+ThreeProcess::~ThreeProcess() {
   std::fclose(to_);  // the end of its input ends it
   std::fclose(from_);
   ::waitpid(pid_, nullptr, 0);
 }
 
-std::vector<double> ThreeMixer::ask(const std::string& line) {
+std::vector<double> ThreeProcess::ask(const std::string& line) {
   std::fprintf(to_, "%s\n", line.c_str());
   std::fflush(to_);
   std::vector<double> numbers;

@@ -8,17 +8,19 @@
 
 namespace tweend::bench {
 
-/// three.js's AnimationMixer in a Node of its own, playing a clip that CharacterClip has written.
-class ThreeMixer {
+/// three.js in a Node of its own, asked by lines.
+class ThreeProcess {
  public:
   /// Whether Node and three.js are there; `./dev bench` sees to it.
   [[nodiscard]] static bool is_installed();
-  explicit ThreeMixer(const std::string& clip_json);
-  ~ThreeMixer();
-  ThreeMixer(const ThreeMixer&) = delete;
-  ThreeMixer& operator=(const ThreeMixer&) = delete;
+  /// @param script  in bench/three
+  /// @param file    what the script is to work on
+  ThreeProcess(const std::string& script, const std::string& file);
+  ~ThreeProcess();
+  ThreeProcess(const ThreeProcess&) = delete;
+  ThreeProcess& operator=(const ThreeProcess&) = delete;
 
-  /// The numbers that answer a line; see bench/three_mixer/mixer.mjs.
+  /// The numbers that answer a line; see the scripts.
   [[nodiscard]] std::vector<double> ask(const std::string& line);
 
  private:
