@@ -1,7 +1,6 @@
 // How long a glTF file takes to become a model against three.js's GLTFLoader. That one looks at buffers where they lie and
-// trusts them; an import here checks every number, hashes it, and hands it over as a model blob, for which it may take four times
-// as long:
-// both read the demo's walker (21 joints, three clips, two morph targets) from a warm cache.
+// trusts them; an import here checks every number, hashes it, and hands it over as a model blob, for which it may take four
+// times as long. Both read the demo's walker (21 joints, three clips, two morph targets) from a warm cache.
 
 #include <cstdio>
 #include <string>

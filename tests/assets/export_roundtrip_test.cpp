@@ -195,7 +195,8 @@ TEST(ExportedSequence, BringsItsMaterials) {
   for (const NewFile& file : must(write_obj_sequence(actor, actor.clips.back(), "seq", Limits{}))) {
     folder.write("out/" + file.name, file.bytes);
   }
-  const model::Surface& surface = imported(folder, "out").model->mesh->surface();
+  const model::Actor read = imported(folder, "out");
+  const model::Surface& surface = read.model->mesh->surface();
   ASSERT_EQ(surface.parts.size(), 3U);
   EXPECT_EQ(surface.materials[0].base_color, actor.model->mesh->surface().materials[0].base_color);
   EXPECT_EQ(surface.materials[0].name, "red_\"__\"");
