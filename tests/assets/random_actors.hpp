@@ -34,13 +34,16 @@ class RandomActors {
       m.mesh = mesh(kind.parts);
       m.rest = key(*m.mesh);
       if (kind.skin && kind.skeleton) m.skin = skin(*m.skeleton, m.rest->positions());
-      if (kind.morphs) m.morphs = morphs();
+      if (kind.morphs && kind.skeleton) m.morphs = morphs();
     }
     model::Actor actor;
     actor.name = "puppet";
     actor.model = std::make_shared<const model::Model>(std::move(m));
     if (below(2) == 0) actor.settings.interpolation = mode();
-    for (int i = 0; i < 3; ++i) actor.clips.push_back(skeletal_clip("pose" + std::to_string(i), *actor.model));
+    // Poses, those of morph weights too, are of actors with joints: no import and no command makes others.
+    for (int i = 0; kind.skeleton && i < 3; ++i) {
+      actor.clips.push_back(skeletal_clip("pose" + std::to_string(i), *actor.model));
+    }
     if (kind.mesh && kind.vertex_clip) {
       for (int i = 0; i < 3; ++i) actor.clips.push_back(vertex_clip("mesh" + std::to_string(i), *actor.model));
     }
@@ -178,8 +181,7 @@ class RandomActors {
   model::KeyedValue keyed(std::uint32_t target, animation::Property property) {
     if (property != animation::Property::Rotation) return {{target, property}, glm::vec4(vec(1) + glm::vec3(1.2F), 0.0F)};
     const glm::quat q = turn(0.8);
-    const float sign = below(3) == 0 ? 1.0F : 1.0F;
-    return {{target, property}, sign * glm::vec4(q.x, q.y, q.z, q.w)};
+    return {{target, property}, glm::vec4(q.x, q.y, q.z, q.w)};
   }
 
   model::PoseKeyPtr pose(const model::Model& m, bool sparse) {
