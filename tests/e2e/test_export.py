@@ -93,6 +93,39 @@ class Glb(Export):
         self.assertEqual([a["name"] for a in document["animations"]], ["default", "round"])
         self.assertEqual(document["nodes"][1]["translation"], [0, -0.5, 0])
 
+    def test_poses_come_back_the_same(self):
+        """Also where keys lie in different hemispheres, and where a closed clip has turned over at its end."""
+        self.add_arm()
+        clips = ["default", "round"]
+        for mode in ("step", "linear", "catmull_rom", "cubic"):
+            for closed in (False, True):
+                for signs in ((1, -1, 1, 1), (1, 1, -1, -1), (-1, 1, -1, 1)):
+                    clips.append(f"{mode}{len(clips)}")
+                    self.c.call("clip.create", clip=clips[-1], interpolation=mode, **({"closed": True, "duration": 4} if closed else {}))
+                    for i, sign in enumerate(signs if mode != "cubic" else (1, 1, 1, 1)):
+                        self.c.call("keyframe.add", clip=clips[-1], time=i * 0.8 + (0.1 if len(clips) % 2 else 0),
+                                    pose={"hip": {"rotation": [sign * v for v in turn(0.9 * i)]}})
+        self.export("arm.glb")
+        self.validate("arm.glb")
+        self.c.call("actor.add", actor="again", asset="arm.glb")
+        for clip in clips:
+            for time in (0, 0.03, 0.25, 0.55, 0.95, 1.3, 1.75, 2.2, 2.9, 3.6, 3.97):
+                a, b = ({j["name"]: j for j in self.c.call("pose.sample", actor=n, clip=clip, time=time)["joints"]}
+                        for n in ("arm", "again"))
+                for name, joint in a.items():
+                    self.near(b[name]["translation"] + b[name]["scale"], joint["translation"] + joint["scale"])
+                    sign = 1 if sum(p * q for p, q in zip(joint["rotation"], b[name]["rotation"])) > 0 else -1
+                    self.near([sign * v for v in b[name]["rotation"]], joint["rotation"])
+
+    def test_vertices_come_back_the_same(self):
+        self.add_wave(interpolation="catmull_rom")
+        self.export("wave.glb")
+        self.c.call("actor.add", actor="again", asset="wave.glb")
+        for time in (0, 0.2, 0.5, 0.77, 1):
+            a, b = (self.c.call("vertices.sample", actor=n, clip="default", time=time) for n in ("wave", "again"))
+            self.near(b["positions"], a["positions"])
+            self.near(b["normals"], a["normals"], 1e-4)
+
     def test_vertex_clips_become_morph_targets(self):
         self.add_wave(interpolation="catmull_rom")
         self.c.call("clip.create", clip="cue", keys=[k["keyframe"] for k in self.c.call("keyframe.list")["keyframes"]][:2],
