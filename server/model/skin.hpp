@@ -37,8 +37,8 @@ class Skin {
   [[nodiscard]] const std::vector<SkinEntry>& entries() const noexcept { return entries_; }
   [[nodiscard]] std::size_t per_vertex() const noexcept { return per_vertex_; }
   [[nodiscard]] animation::SkinInfluences influences() const noexcept { return {per_vertex_, joints_, weights_}; }
-  /// Around the vertices at rest that an entry moves, in the mesh's space; an empty vector's of entries that move none are
-  /// inverted (min > max).
+  /// For each entry, around the vertices at rest that it moves, in the mesh's space; of one that moves none, inverted
+  /// (min > max).
   [[nodiscard]] const std::vector<Bounds>& entry_bounds() const noexcept { return entry_bounds_; }
   [[nodiscard]] const ContentHash& hash() const noexcept { return hash_; }
 
