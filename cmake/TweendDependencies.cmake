@@ -9,6 +9,11 @@ pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)          # EGL and OpenGL, found at run time
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+if(TWEEND_H264)
+  pkg_check_modules(FFMPEG REQUIRED IMPORTED_TARGET libavcodec libavformat libavutil)   # H.264, MP4
+  find_path(TWEEND_YUV_DIR libyuv.h REQUIRED)                      # from RGB to what H.264 is made of
+  find_library(TWEEND_YUV_LIBRARY yuv REQUIRED)
+endif()
 find_path(TWEEND_GLM_DIR glm/glm.hpp REQUIRED)
 find_path(TWEEND_JSON_DIR nlohmann/json.hpp REQUIRED)
 find_path(TWEEND_CLI11_DIR CLI/CLI.hpp REQUIRED)

@@ -2,25 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <concepts>
+#include "protocol/little_endian.hpp"
 
 namespace tweend::protocol {
-namespace {
-
-// Byte by byte, so that the order is the wire's and not the machine's; compilers make one store of it.
-template <std::unsigned_integral T>
-void put(std::byte* at, T value) noexcept {
-  for (std::size_t i = 0; i < sizeof(T); ++i) at[i] = static_cast<std::byte>((value >> (8 * i)) & 0xFFU);
-}
-
-template <std::unsigned_integral T>
-T get(const std::byte* at) noexcept {
-  T value = 0;
-  for (std::size_t i = 0; i < sizeof(T); ++i) value = static_cast<T>(value | (static_cast<T>(at[i]) << (8 * i)));
-  return value;
-}
-
-}  // namespace
 
 PacketHeaderBytes encode_header(const PacketHeader& header) noexcept {
   PacketHeaderBytes bytes{};

@@ -15,14 +15,21 @@ enum class PacketKind : std::uint8_t { Pose = 1, Vertices = 2, Frame = 3 };
 /// Pose payload: for each joint in the layout's order translation xyz, rotation xyzw, scale xyz as float32, local space; then
 /// the morph weights, float32; little-endian.
 inline constexpr std::uint8_t kPoseF32 = 0;
+/// See pose_q16.hpp.
+inline constexpr std::uint8_t kPoseQ16 = 1;
 inline constexpr std::size_t kFloatsPerJoint = 10;
 
 /// Vertices payload: n × 3 float32 positions, then n × 3 float32 normals, little-endian, model space.
 inline constexpr std::uint8_t kVerticesF32 = 0;
+/// See vertices_q16.hpp and vertices_meshopt.hpp.
+inline constexpr std::uint8_t kVerticesQ16 = 1;
+inline constexpr std::uint8_t kVerticesMeshopt = 2;
 
-/// Encodings of a frame: a JPEG or PNG file, or width × height × 4 bytes RGBA, sRGB, top row first. (2 is H.264, to come.)
+/// Encodings of a frame: a JPEG or PNG file, an Annex B access unit of H.264, or width × height × 4 bytes RGBA, sRGB, top row
+/// first.
 inline constexpr std::uint8_t kFrameJpeg = 0;
 inline constexpr std::uint8_t kFramePng = 1;
+inline constexpr std::uint8_t kFrameH264 = 2;
 inline constexpr std::uint8_t kFrameRgba = 3;
 
 /// Bits of PacketHeader::flags.
