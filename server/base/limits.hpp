@@ -28,6 +28,10 @@ struct Limits {
   std::size_t scheduled_commands = 10'000;     ///< that wait for their reading, of all scenes together
   std::size_t stream_pixels = 64U << 20U;      ///< of a connection's streams of frames together
   std::size_t frame_side = 4'096;              ///< pixels of a picture's width, and of its height
+  std::size_t recordings = 8;                  ///< under way at once
+  std::size_t recorded_pictures = 108'000;     ///< of one recording, which ends then: an hour at 30 a second
+  std::size_t film_pictures = 18'000;          ///< of one file of GET /scenes/{scene}/clip.mp4
+  std::size_t film_bytes = 256U << 20U;        ///< of the same, which is made in memory
   std::size_t asset_bytes = 256U << 20U;       ///< one asset's files together
   std::size_t texture_pixels = 4'096 * 4'096;  ///< one texture's; those of one asset together: 16 times as many
 };

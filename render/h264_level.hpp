@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+#include "render/picture.hpp"
+
+namespace tweend::render {
+
+/// What a decoder has to be able to do: a row of Table A-1 of ITU-T H.264.
+struct H264Level {
+  int idc;                     ///< ten times its number: 31 is level 3.1
+  std::int64_t macroblocks_s;  ///< 16 × 16 pixels each, a second
+  std::int64_t macroblocks;    ///< of a picture
+  std::int64_t bit_rate;       ///< bits a second, in the Baseline and Main profiles; also how many bits wait at most
+};
+
+/// The lowest level from 3 on that allows pictures of this size, so many a second; 6.2 if none does. From 3 on, since whatever
+/// decodes today does that, and lower ones allow less than 10 Mbit/s.
+[[nodiscard]] const H264Level& h264_level(Size size, double rate) noexcept;
+
+}  // namespace tweend::render
