@@ -29,8 +29,10 @@ Engine::Engine(const Limits& limits, std::vector<assets::AssetRoot> roots, const
       stills_(workers_, renderer_, kStillsAtOnce),
       stage_(store_, limits_, metrics_),
       hub_(stage_, workers_, renderer_, deliver, metrics_),
-      events_(hub_, deliver, metrics_),
-      services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_, stills_} {}
+      recorder_(stage_, film_workers_, renderer_, limits_),
+      films_(film_workers_, renderer_, limits_),
+      events_(hub_, recorder_, deliver, metrics_),
+      services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_, stills_, recorder_, films_} {}
 
 Engine::~Engine() { stop(); }
 
@@ -42,6 +44,8 @@ Status Engine::start() {
 
 void Engine::stop() {
   if (!std::exchange(running_, false)) return;
+  films_.stop();
+  recorder_.finish_all();
   std::promise<void> quiet;
   stage_.post([&] {
     hub_.stop();
@@ -49,7 +53,8 @@ void Engine::stop() {
   });
   quiet.get_future().wait();
   renderer_.stop();  // before the workers, which still encode what it has drawn
-  workers_.stop();   // before the stage, on which evaluations under way still end
+  film_workers_.stop();
+  workers_.stop();  // before the stage, on which evaluations under way still end
   stage_.stop();
 }
 

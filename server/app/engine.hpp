@@ -25,23 +25,31 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   [[nodiscard]] Status start();
-  /// Commits what was accepted, stops every thread. Nobody may ask for anything any more.
+  /// Answers who awaits a film that there will be none. Nobody is kept from asking: they are told the same.
+  void end_films() { films_.stop(); }
+  /// Commits what was accepted, makes files of what has been recorded, stops every thread. Nobody may ask for anything any
+  /// more.
   void stop();
 
   [[nodiscard]] const commands::Services& services() const noexcept { return services_; }
   [[nodiscard]] const render::RenderThread& renderer() const noexcept { return renderer_; }
 
  private:
+  static constexpr std::size_t kFilmThreads = 2;
+
   const Limits limits_;
   bool running_ = false;
   Metrics& metrics_;
   assets::AssetLibrary library_;
   store::MemoryStore store_;
   WorkerPool workers_{std::max(2U, std::thread::hardware_concurrency())};
+  WorkerPool film_workers_{kFilmThreads};  ///< apart: films have time, streams and commands have none
   render::RenderThread renderer_;
   streams::StillQueue stills_;
   stage::Stage stage_;
   streams::Hub hub_;
+  streams::Recorder recorder_;
+  streams::FilmQueue films_;
   commands::EventHub events_;
   commands::Services services_;
 };

@@ -69,6 +69,10 @@ void add_limit_options(CLI::App& serve, ServeOptions& o) {
   add("--max-undo", l.undo_steps, "Steps that can be undone");
   add("--max-stream-pixels", l.stream_pixels, "Pixels of a connection's streams of frames together");
   add("--max-frame-side", l.frame_side, "Pixels of a picture's width, and of its height");
+  add("--max-recordings", l.recordings, "Recordings at once");
+  add("--max-recorded-pictures", l.recorded_pictures, "Pictures a recording");
+  add("--max-film-pictures", l.film_pictures, "Pictures of a film by HTTP");
+  add("--max-film-bytes", l.film_bytes, "Bytes of a film by HTTP");
   add("--max-gpu-bytes", o.render.gpu_bytes, "Bytes of the GPU's memory for meshes and keyframes");
   add("--max-asset-bytes", l.asset_bytes, "Bytes of an asset's files");
   add("--max-texture-pixels", l.texture_pixels, "Pixels of a texture");
@@ -87,9 +91,11 @@ void add_view_options(CLI::App& render, OfflineOptions& o) {
                                 "Where to look from: degrees from +Z towards +X, and above the ground; all is in view",
                                 [&o](const std::vector<double>& n) {
                                   o.orbit_deg = {static_cast<float>(n[0]), static_cast<float>(n[1])};
+                                  o.looks_from = true;
                                 })
                            ->default_str(fmt::format("{},{}", o.orbit_deg[0], o.orbit_deg[1]));
   CLI::Option* eye = add_place(render, "--eye", o.eye, "Where to look from, in place of --orbit")->excludes(orbit);
+  eye->each([&o](const std::string&) { o.looks_from = true; });
   add_place(render, "--target", o.target, "What --eye looks at; by default the origin")->needs(eye);
   add_list(render, "--background",
            {.form = "R,G,B",
@@ -104,7 +110,7 @@ void add_view_options(CLI::App& render, OfflineOptions& o) {
 
 void add_clip_options(CLI::App& render, OfflineOptions& o) {
   render.add_option("--clip", o.clip, "Which clip to show; by default the first")->type_name("NAME");
-  render.add_option("--fps", o.fps, "Frames a second of a sequence")
+  render.add_option("--sequence-fps", o.fps, "Frames a second of a sequence")
       ->type_name("N")
       ->capture_default_str()
       ->check(finite_above_zero());
@@ -126,8 +132,41 @@ void add_clip_options(CLI::App& render, OfflineOptions& o) {
       ->type_name("MODE[,MODE...]");
 }
 
+/// `--fps` is a film's, and without one that of sequences, as it was before there were films.
+void add_film_options(CLI::App& render, OfflineOptions& o) {
+  CLI::Option* mp4 = render.add_option("--mp4", o.mp4, "A film of the clip, in place of pictures")->type_name("FILE");
+  for (const char* picture : {"--at", "--output", "--sheet", "--quality"}) mp4->excludes(render.get_option(picture));
+  const auto fps = [&o, mp4, sequence = render.get_option("--sequence-fps")](double found) {
+    if (mp4->count() > 0) {
+      o.film_fps = found;
+    } else if (sequence->count() > 0) {
+      throw CLI::ValidationError("--fps", "expected --sequence-fps alone without --mp4, found both");
+    } else {
+      o.fps = found;
+    }
+  };
+  render
+      .add_option_function<double>("--fps", fps,
+                                   "Pictures a second of a film, by default 30; without --mp4 the same as --sequence-fps")
+      ->type_name("N")
+      ->check(finite_above_zero());
+  const auto add_time = [&](const char* name, std::optional<double>& to, const char* help) {
+    add_list(render, name,
+             {.form = "S", .least = 1, .most = 1, .fits = [](double n) { return n >= 0.0; }, .each = "a number from 0 on"},
+             help, [&to](const std::vector<double>& n) { to = n.front(); })
+        ->needs(mp4);
+  };
+  add_time("--from", o.from_s, "Media time at which the film begins; by default 0");
+  add_time("--to", o.to_s, "Media time at which the film ends, not shown itself; by default the first actor's clip's end");
+}
+
 void add_offline_options(CLI::App& render, OfflineOptions& o) {
-  render.add_option("ASSET", o.assets, "glTF and OBJ files and sequences' folders; several stand side by side")->required();
+  render
+      .add_option("ASSET", o.assets,
+                  "glTF and OBJ files and sequences' folders; several stand side by side. Or a .json file of edits")
+      ->required();
+  render.add_option("--assets", o.assets_folder, "Where the assets are that a file of edits names; by default its own folder")
+      ->type_name("DIR");
   add_list(render, "--at", {.form = "T[,T...]"}, "Media times, seconds; a picture for each",
            [&o](const std::vector<double>& n) { o.times_s = n; })
       ->default_str("0");
@@ -154,6 +193,7 @@ void add_offline_options(CLI::App& render, OfflineOptions& o) {
       ->capture_default_str()
       ->check(CLI::Range(1, 16));
   render.add_option("--quality", o.quality, "Of a .jpg")->type_name("N")->capture_default_str()->check(CLI::Range(1, 100));
+  add_film_options(render, o);
 }
 
 void print_commands() {
@@ -175,7 +215,7 @@ CommandLine parse_command_line(int argc, char** argv) {
   add_serve_options(serve, serve_options);
   add_limit_options(serve, serve_options);
   OfflineOptions offline_options;
-  CLI::App& render = *app.add_subcommand("render", "Draw assets to picture files, without a server");
+  CLI::App& render = *app.add_subcommand("render", "Draw assets to picture files or a film, without a server");
   add_offline_options(render, offline_options);
   InspectOptions inspect_options;
   CLI::App& inspect = *app.add_subcommand("inspect", "What a file holds that can be an asset, and what is wrong with it");

@@ -129,6 +129,7 @@ class Server {
 
   /// Answers what has been asked, then stops.
   void stop() {
+    engine_.end_films();  // first: they may take longer than the network waits for answers
     network_.stop();
     engine_.stop();
   }

@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "server/assets/new_asset_file.hpp"
 #include "server/assets/new_file.hpp"
 #include "server/assets/open_beneath.hpp"
 #include "server/base/result.hpp"
@@ -55,6 +57,11 @@ class AssetRoot {
   /// @param files  names without '/', none twice
   [[nodiscard]] Status save_folder(std::string_view name, std::span<const NewFile> files) const;
 
+  /// Begins a new file or folder that takes a while to be made, with the same promises: it is there once it is committed.
+  /// @return as save_file
+  [[nodiscard]] Result<std::unique_ptr<NewAssetFile>> new_file(std::string_view name) const;
+  [[nodiscard]] Result<std::unique_ptr<NewAssetFolder>> new_folder(std::string_view name) const;
+
   /// The folder as it was named to `open`.
   [[nodiscard]] const std::string& folder() const noexcept { return folder_; }
 
@@ -63,6 +70,8 @@ class AssetRoot {
   [[nodiscard]] Result<Descriptor> open_name(std::string_view name, int flags) const;
   /// The folder that something called `name` is to be saved in.
   [[nodiscard]] Result<Descriptor> open_place(std::string_view name) const;
+  /// The same, where there is nothing of that name yet.
+  [[nodiscard]] Result<Descriptor> open_new_place(std::string_view name) const;
 
   std::string folder_;
   Descriptor root_;

@@ -1,8 +1,8 @@
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 
 #include <cerrno>
-#include <system_error>
 #include <utility>
 
 #include "server/assets/asset_name.hpp"
@@ -10,28 +10,6 @@
 #include "server/assets/save_beneath.hpp"
 
 namespace tweend::assets {
-namespace {
-
-Error not_saved(std::string_view name, int error) {
-  const std::string quoted = quoted_name(name);
-  switch (error) {
-    case EEXIST:
-    case ENOTEMPTY:
-      return fail(ErrorCode::Conflict, fmt::format("expected a new name under the assets folder, found that there is a {} "
-                                                   "already: choose another, or remove that one",
-                                                   quoted));
-    case ENAMETOOLONG:
-      return fail(ErrorCode::InvalidParams, fmt::format("expected a name that the disk can hold, found {}", quoted));
-    default:
-      return fail(ErrorCode::Unavailable,
-                  fmt::format("{} can't be saved: {}; nothing of it is left", quoted, std::generic_category().message(error)));
-  }
-}
-
-std::string_view last_component(std::string_view name) { return name.substr(name.rfind('/') + 1); }
-
-}  // namespace
-
 Result<Descriptor> AssetRoot::open_place(std::string_view name) const {
   if (!is_clean_name(name)) {
     return fail(ErrorCode::NotFound, fmt::format("expected a name under the assets folder, found {}", quoted_name(name)));
@@ -46,6 +24,14 @@ Result<Descriptor> AssetRoot::open_place(std::string_view name) const {
                                                quoted_name(folder)));
 }
 
+Result<Descriptor> AssetRoot::open_new_place(std::string_view name) const {
+  TWEEND_ASSIGN(Descriptor place, open_place(name));
+  struct stat there {};
+  const std::string last(last_component(name));
+  if (::fstatat(place.get(), last.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0) return not_saved(name, EEXIST);
+  return place;
+}
+
 Status AssetRoot::save_file(std::string_view name, std::string_view bytes) const {
   TWEEND_ASSIGN(const Descriptor place, open_place(name));
   const int error = save_file_in(place.get(), std::string(last_component(name)), bytes);
@@ -58,6 +44,16 @@ Status AssetRoot::save_folder(std::string_view name, std::span<const NewFile> fi
   const int error = save_folder_in(place.get(), std::string(last_component(name)), files);
   if (error != 0) return not_saved(name, error);
   return {};
+}
+
+Result<std::unique_ptr<NewAssetFile>> AssetRoot::new_file(std::string_view name) const {
+  TWEEND_ASSIGN(Descriptor place, open_new_place(name));
+  return NewAssetFile::open(std::move(place), std::string(name));
+}
+
+Result<std::unique_ptr<NewAssetFolder>> AssetRoot::new_folder(std::string_view name) const {
+  TWEEND_ASSIGN(Descriptor place, open_new_place(name));
+  return NewAssetFolder::open(std::move(place), std::string(name));
 }
 
 }  // namespace tweend::assets

@@ -9,8 +9,11 @@
 #include <cerrno>
 #include <cstdint>
 #include <random>
+#include <system_error>
+#include <utility>
 
-#include "server/assets/open_beneath.hpp"
+#include "server/assets/asset_name.hpp"
+#include "server/base/result.hpp"
 
 namespace tweend::assets {
 namespace {
@@ -20,34 +23,12 @@ constexpr mode_t kFolderMode = 0777;
 
 int result_of(int returned) { return returned == 0 ? 0 : errno; }
 
-std::string hidden_name() {
-  std::random_device random;
-  const std::uint64_t number = (std::uint64_t{random()} << 32U) | random();
-  return fmt::format(".tweend-{:016x}", number);
-}
-
-int write_all(int fd, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(fd, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    if (written == 0) return ENOSPC;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return result_of(::fsync(fd));
-}
-
-/// Makes a file of that name, which may not be there yet. What fails leaves it, for the caller to remove.
+/// What fails leaves the file, for the caller to remove.
 int write_new(int folder, const std::string& name, std::string_view bytes) {
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
-  const Descriptor file(::openat(folder, name.c_str(), kFlags, kFileMode));
-  return file.is_open() ? write_all(file.get(), bytes) : errno;
-}
-
-/// So that the new name outlives a loss of power, as far as the file system knows how to.
-void sync_folder(int folder) {
-  const Descriptor readable(::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (readable.is_open()) static_cast<void>(::fsync(readable.get()));
+  const Opened file = create_in(folder, name);
+  if (!file.descriptor.is_open()) return file.error;
+  const int error = write_all_at(file.descriptor.get(), 0, std::as_bytes(std::span(bytes)));
+  return error != 0 ? error : result_of(::fsync(file.descriptor.get()));
 }
 
 int write_folder(int parent, const std::string& name, std::span<const NewFile> files) {
@@ -70,6 +51,60 @@ void remove_folder(int parent, const std::string& name, std::span<const NewFile>
 }
 
 }  // namespace
+
+std::string hidden_name() {
+  std::random_device random;
+  const std::uint64_t number = (std::uint64_t{random()} << 32U) | random();
+  return fmt::format(".tweend-{:016x}", number);
+}
+
+Opened create_in(int folder, const std::string& name) {
+  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
+  Descriptor file(::openat(folder, name.c_str(), kFlags, kFileMode));
+  const int error = file.is_open() ? 0 : errno;
+  return {std::move(file), error};
+}
+
+Opened create_folder_in(int folder, const std::string& name) {
+  if (::mkdirat(folder, name.c_str(), kFolderMode) != 0) return {Descriptor(), errno};
+  Descriptor made(::openat(folder, name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+  const int error = made.is_open() ? 0 : errno;
+  if (error != 0) static_cast<void>(::unlinkat(folder, name.c_str(), AT_REMOVEDIR));
+  return {std::move(made), error};
+}
+
+int write_all_at(int file, std::uint64_t offset, std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return errno;
+    if (written == 0) return ENOSPC;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+    offset += static_cast<std::uint64_t>(written);
+  }
+  return 0;
+}
+
+void sync_folder(int folder) {
+  const Descriptor readable(::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (readable.is_open()) static_cast<void>(::fsync(readable.get()));
+}
+
+Error not_saved(std::string_view name, int error) {
+  const std::string quoted = quoted_name(name);
+  switch (error) {
+    case EEXIST:
+    case ENOTEMPTY:
+      return fail(ErrorCode::Conflict, fmt::format("expected a new name under the assets folder, found that there is a {} "
+                                                   "already: choose another, or remove that one",
+                                                   quoted));
+    case ENAMETOOLONG:
+      return fail(ErrorCode::InvalidParams, fmt::format("expected a name that the disk can hold, found {}", quoted));
+    default:
+      return fail(ErrorCode::Unavailable,
+                  fmt::format("{} can't be saved: {}; nothing of it is left", quoted, std::generic_category().message(error)));
+  }
+}
 
 int rename_new(int folder, const std::string& from, const std::string& to, bool is_folder) {
   const int error = result_of(::renameat2(folder, from.c_str(), folder, to.c_str(), RENAME_NOREPLACE));

@@ -26,6 +26,7 @@ const std::vector<Command>& command_table() {
     add_pose_commands(t);
     add_frame_commands(t);
     add_export_commands(t);
+    add_record_commands(t);
     add_stream_commands(t);
     add_event_commands(t);
     return t;

@@ -36,6 +36,7 @@ void add_vertices_commands(std::vector<Command>& table);
 void add_pose_commands(std::vector<Command>& table);
 void add_frame_commands(std::vector<Command>& table);
 void add_export_commands(std::vector<Command>& table);
+void add_record_commands(std::vector<Command>& table);
 void add_event_commands(std::vector<Command>& table);
 void add_stream_commands(std::vector<Command>& table);
 

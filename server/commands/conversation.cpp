@@ -102,20 +102,41 @@ void Conversation::close() {
   if (const auto heard = services_.events.audience_change()) services_.stage.set_audience(*heard);
   for (const auto& [stream, open] : streams_) {
     add(services_.metrics.streams, -1);
-    services_.stage.post(
-        [&hub = services_.hub, key = open.key, peer = peer_, stream = stream] { hub.unsubscribe(key, peer.get(), stream); });
+    unsubscribe_later(stream, open.key);
   }
   streams_.clear();
   units_.clear();
+  queued_bytes_ = 0;
+}
+
+void Conversation::unsubscribe_later(std::uint32_t stream, const streams::StreamKey& key) const {
+  services_.stage.post([&hub = services_.hub, key, peer = peer_, stream] { hub.unsubscribe(key, peer.get(), stream); });
 }
 
 void Conversation::stream_ended(std::uint32_t stream, const std::string& reason) {
-  if (streams_.erase(stream) == 0) return;  // closed by the client meanwhile
+  const auto at = streams_.find(stream);
+  if (at == streams_.end()) return;  // closed by the client meanwhile
+  // It may still be read, where the client is cut off; or have gone on elsewhere while the word of its end was on its way.
+  unsubscribe_later(stream, at->second.key);
+  streams_.erase(at);
   add(services_.metrics.streams, -1);
   std::string params = fmt::format(R"({{"stream":{},"reason":)", stream);
   protocol::append_json_string(reason, params);
   params += '}';
   peer_->send_after_packets(std::make_shared<const std::string>(protocol::notification_json("stream.ended", params)));
+}
+
+void Conversation::move_to_rung(std::uint32_t stream, std::size_t rung) {
+  const auto at = streams_.find(stream);
+  auto* frames = at == streams_.end() ? nullptr : std::get_if<streams::FramesSpec>(&at->second.key.what);
+  if (frames == nullptr || frames->rung == rung) return;
+  const streams::StreamKey from = at->second.key;
+  frames->rung = rung;
+  if (!at->second.subscribed) return;
+  services_.stage.post(
+      [&hub = services_.hub, from, to = at->second.key, stream, sink = std::weak_ptr<streams::PacketSink>(peer_)] {
+        hub.retune(from, to, {sink, stream});
+      });
 }
 
 Conversation::Unit* Conversation::find_unit(std::uint64_t number) noexcept {

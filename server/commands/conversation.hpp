@@ -38,6 +38,10 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void close();
   /// A stream's actor or scene is gone: tells the client.
   void stream_ended(std::uint32_t stream, const std::string& reason);
+  /// Its producer is told that this stream has gone.
+  void unsubscribe_later(std::uint32_t stream, const streams::StreamKey& key) const;
+  /// An adaptive stream goes on with another rung of the ladder; one that was closed does not.
+  void move_to_rung(std::uint32_t stream, std::size_t rung);
   /// Told after every change that may let the connection read on or close.
   void on_progress(Task progress) { progress_ = std::move(progress); }
 

@@ -105,8 +105,8 @@ std::string notification(std::string_view method, const T& params) {
 
 }  // namespace
 
-EventHub::EventHub(streams::Hub& hub, Post to_network, Metrics& metrics)
-    : hub_(hub), to_network_(std::move(to_network)), metrics_(metrics) {}
+EventHub::EventHub(streams::Hub& hub, streams::Recorder& recorder, Post to_network, Metrics& metrics)
+    : hub_(hub), recorder_(recorder), to_network_(std::move(to_network)), metrics_(metrics) {}
 
 void EventHub::subscribe(const std::string& scene, const std::shared_ptr<Peer>& peer) {
   unsubscribe(scene, peer.get());  // once is enough
@@ -157,7 +157,10 @@ void EventHub::importing(const std::string& scene, const std::string& actor, con
   tell(scene, notification("asset.progress", AssetProgress{scene, actor, asset, fraction}), Order::AtOnce);
 }
 
-void EventHub::published(const std::string& scene, const stage::SceneViewPtr& view) { hub_.follow(scene, view); }
+void EventHub::published(const std::string& scene, const stage::SceneViewPtr& view) {
+  hub_.follow(scene, view);
+  recorder_.follow(scene, view);
+}
 
 void EventHub::edited(const stage::EditEvent& e) {
   tell(e.scene,

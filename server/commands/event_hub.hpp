@@ -11,6 +11,7 @@
 #include "server/commands/peer.hpp"
 #include "server/stage/stage.hpp"
 #include "server/streams/hub.hpp"
+#include "server/streams/recorder.hpp"
 
 namespace tweend::commands {
 
@@ -19,7 +20,7 @@ namespace tweend::commands {
 /// The stage speaks to it on its strand; the list of subscribers lives on the network thread.
 class EventHub final : public stage::StageListener {
  public:
-  EventHub(streams::Hub& hub, Post to_network, Metrics& metrics);
+  EventHub(streams::Hub& hub, streams::Recorder& recorder, Post to_network, Metrics& metrics);
 
   // Network thread:
   void subscribe(const std::string& scene, const std::shared_ptr<Peer>& peer);
@@ -47,6 +48,7 @@ class EventHub final : public stage::StageListener {
   void tell_all(std::string scene, Texts texts, Order order);
 
   streams::Hub& hub_;
+  streams::Recorder& recorder_;
   Post to_network_;
   Metrics& metrics_;
   std::map<std::string, std::vector<std::weak_ptr<Peer>>> subscribers_;  ///< by scene

@@ -128,7 +128,7 @@ Result<ExportResult> export_asset(const ExportParams& p, const QueryContext& con
 
 }  // namespace
 
-Status check_export_name(const std::string& name, bool is_glb) {
+Status check_new_name(const std::string& name) {
   if (!assets::is_clean_name(name)) {
     return fail(ErrorCode::NotFound,
                 fmt::format("expected a name under the assets folder, found {}", assets::quoted_name(name)), kNamePath);
@@ -138,6 +138,11 @@ Status check_export_name(const std::string& name, bool is_glb) {
       return bad_name(name, "1 to 64 of A-Z a-z 0-9 _ . - between each '/', not starting with a dot");
     }
   }
+  return {};
+}
+
+Status check_export_name(const std::string& name, bool is_glb) {
+  TWEEND_TRY(check_new_name(name));
   if (is_glb && !name.ends_with(".glb")) return bad_name(name, "a name that ends with .glb");
   const auto ends = [&](std::string_view extension) { return assets::has_extension(name, extension); };
   if (!is_glb && (ends(".obj") || ends(".glb") || ends(".gltf"))) {

@@ -13,8 +13,10 @@ namespace tweend::commands {
 [[nodiscard]] Result<std::string> exported_glb(const std::string& scene, const std::string& actor, const QueryContext& context);
 
 /// Whether something may be saved under this name: parts of A-Z a-z 0-9 _ . - with '/' between, none of them longer than 64 or
-/// beginning with a dot. It is the name of a .glb file, or of a folder.
+/// beginning with a dot.
 /// @return NotFound for one that leaves the assets folder, else InvalidParams; path "params.name"
+[[nodiscard]] Status check_new_name(const std::string& name);
+/// The same, of a .glb file or of a folder.
 [[nodiscard]] Status check_export_name(const std::string& name, bool is_glb);
 
 }  // namespace tweend::commands

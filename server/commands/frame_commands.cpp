@@ -45,7 +45,18 @@ Result<std::uint32_t> side(std::string_view name, std::uint64_t pixels, std::siz
               fmt::format("params.{}", name));
 }
 
+Status check_even(std::string_view side, std::uint32_t pixels) {
+  if (pixels % 2 == 0) return {};
+  return fail(ErrorCode::InvalidParams, fmt::format("expected an even number of pixels for mp4, found {}", pixels),
+              fmt::format("params.{}", side));
+}
+
 }  // namespace
+
+Status check_even(render::Size size) {
+  TWEEND_TRY(check_even("width", size.width));
+  return check_even("height", size.height);
+}
 
 Result<render::Size> frame_size(const std::optional<std::uint64_t>& width, const std::optional<std::uint64_t>& height,
                                 const Services& services) {

@@ -2,6 +2,7 @@
 
 #include "server/commands/command.hpp"
 #include "server/commands/view_types.hpp"
+#include "server/streams/film.hpp"
 #include "server/streams/still.hpp"
 
 namespace tweend::protocol {
@@ -20,6 +21,8 @@ inline constexpr std::uint64_t kDefaultHeight = 720;
 inline constexpr int kDefaultQuality = 80;
 inline constexpr protocol::Range kPixels{.min = 1.0};
 inline constexpr protocol::Range kQuality{.min = 1.0, .max = 100.0};
+/// Pictures a second of a film.
+inline constexpr protocol::Range kFilmRate{.min = streams::kSlowestFilm, .max = 240.0};
 
 /// One picture: `frame.render`, and GET /scenes/{scene}/frame.png.
 struct FrameParams {
@@ -46,6 +49,9 @@ struct FrameParams {
 /// @return Limit naming the parameter and both numbers
 [[nodiscard]] Result<render::Size> frame_size(const std::optional<std::uint64_t>& width,
                                               const std::optional<std::uint64_t>& height, const Services& services);
+
+/// Whether an MP4 file can have that size. @return InvalidParams naming the first side that is odd
+[[nodiscard]] Status check_even(render::Size size);
 
 /// What the parameters come to. @return the errors of the parameters; Unavailable where nothing draws
 [[nodiscard]] Result<streams::StillRequest> still_request(const FrameParams& p, const QueryContext& context);

@@ -1,3 +1,4 @@
+#include "render/h264_encoder.hpp"
 #include "server/commands/command_table.hpp"
 
 namespace tweend::commands {
@@ -19,7 +20,8 @@ struct HelloResult {
   std::string version = TWEEND_VERSION;
   std::int64_t protocol = 1;
   std::string role = std::string(role_name(Role::Admin));
-  std::vector<std::string> capabilities{"line", "websocket", "http", "events", "assets:obj", "pose:f32", "vertices:f32"};
+  std::vector<std::string> capabilities{"line",     "websocket", "http",         "events",       "assets:obj",
+                                        "pose:f32", "pose:q16",  "vertices:f32", "vertices:q16", "vertices:meshopt"};
   static void describe(FieldList<HelloResult>& f) {
     using T = HelloResult;
     f.add<&T::server>("server", "Always tweend.");
@@ -47,6 +49,7 @@ Result<HelloResult> hello(const HelloParams&, const QueryContext& context) {
   HelloResult result;
   if (context.services.renderer.device()) {
     for (const char* encoding : {"frames:jpeg", "frames:png", "frames:rgba"}) result.capabilities.emplace_back(encoding);
+    if (render::has_h264()) result.capabilities.emplace_back("frames:h264");
   }
   return result;
 }
@@ -55,9 +58,8 @@ Result<PingResult> ping(const NoParams&, const QueryContext& context) { return P
 
 Result<std::map<std::string, double>> stats(const NoParams&, const QueryContext& context) {
   std::map<std::string, double> values;
-  for (const Metrics::Reading& r : context.services.metrics.read()) {
-    values["tweend_" + std::string(r.name)] = static_cast<double>(r.value);
-  }
+  for (const Metrics::Reading& r : context.services.metrics.read()) values[r.name] = r.value;
+  for (const auto& r : context.services.hub.meters().read()) values[r.name] = static_cast<double>(r.value);
   return values;
 }
 

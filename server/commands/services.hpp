@@ -10,7 +10,9 @@
 #include "server/base/worker_pool.hpp"
 #include "server/commands/event_hub.hpp"
 #include "server/stage/stage.hpp"
+#include "server/streams/clip_film.hpp"
 #include "server/streams/hub.hpp"
+#include "server/streams/recorder.hpp"
 #include "server/streams/still_queue.hpp"
 
 namespace tweend::commands {
@@ -26,6 +28,8 @@ struct Services {
   WorkerPool& workers;
   render::RenderThread& renderer;
   streams::StillQueue& stills;
+  streams::Recorder& recorder;
+  streams::FilmQueue& films;
 };
 
 }  // namespace tweend::commands

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "render/h264_encoder.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
 #include "server/commands/stream_types.hpp"
@@ -41,14 +42,14 @@ struct StreamLayout {
     using T = StreamLayout;
     f.add<&T::joints>("joints", "In the order of the payload.");
     f.add<&T::weights>("weights", "Names of the morph targets, in the order of the payload.");
-    f.add<&T::stride>("stride", "Bytes from one joint to the next.");
+    f.add<&T::stride>("stride", "Bytes from one joint to the next, as f32.");
     f.add<&T::vertices>("vertices", "How many.");
     f.add<&T::indices>("indices_base64", "Little-endian uint32, three a triangle.");
     f.add<&T::uvs>("uvs_base64", "Little-endian float32, u and v of each vertex.");
     f.add<&T::bounds>("bounds", "Of what the player's clip shows.");
     f.add<&T::width>("width", "Pixels.");
     f.add<&T::height>("height", "Pixels.");
-    f.add<&T::codec>("codec", "jpeg, png or rgba.");
+    f.add<&T::codec>("codec", "jpeg, png or rgba; of h264 what WebCodecs calls it.");
   }
 };
 
@@ -75,10 +76,11 @@ struct UpdateParams {
   }
 };
 
-struct CloseParams {
-  static constexpr std::string_view kName = "StreamCloseParams";
+/// Of what needs no more than the stream.
+struct StreamParams {
+  static constexpr std::string_view kName = "StreamParams";
   std::uint64_t stream = 0;
-  static void describe(FieldList<CloseParams>& f) { f.add<&CloseParams::stream>("stream", "Its number."); }
+  static void describe(FieldList<StreamParams>& f) { f.add<&StreamParams::stream>("stream", "Its number."); }
 };
 
 StreamLayout vertices_layout(const model::Actor& actor, const model::ClipPtr& clip) {
@@ -100,19 +102,20 @@ StreamLayout pose_layout(const model::Model& model) {
   return layout;
 }
 
-StreamLayout frames_layout(const streams::FramesSpec& spec) {
-  constexpr std::array<const char*, 3> kCodecs{"jpeg", "png", "rgba"};
+StreamLayout frames_layout(const streams::FramesSpec& spec, double rate) {
+  constexpr std::array<const char*, 4> kCodecs{"jpeg", "png", "h264", "rgba"};
   StreamLayout layout;
   layout.width = spec.size.width;
   layout.height = spec.size.height;
-  layout.codec = kCodecs[static_cast<std::size_t>(spec.encoding)];
+  layout.codec = spec.encoding == streams::FrameEncoding::H264 ? render::H264Encoder::codec(spec.size, rate)
+                                                               : kCodecs[static_cast<std::size_t>(spec.encoding)];
   return layout;
 }
 
 /// For a worker: a large mesh's indices take a while to print.
 std::string open_result(std::uint32_t stream, const streams::StreamKey& key, const stage::SceneView& view) {
   if (const auto* frames = std::get_if<streams::FramesSpec>(&key.what)) {
-    return protocol::encode(OpenResult{stream, frames_layout(*frames)});
+    return protocol::encode(OpenResult{stream, frames_layout(*frames, key.rate)});
   }
   if (const auto* pose = std::get_if<streams::PoseSpec>(&key.what)) {
     return protocol::encode(OpenResult{stream, pose_layout(*view.scene->find_actor(pose->actor)->model)});
@@ -129,12 +132,6 @@ void subscribe_later(const std::shared_ptr<Conversation>& conversation, std::uin
   services.stage.post([&hub = services.hub, key, sink = std::weak_ptr<streams::PacketSink>(conversation->peer()), stream] {
     hub.subscribe(key, {sink, stream});
   });
-}
-
-void unsubscribe_later(const std::shared_ptr<Conversation>& conversation, const streams::StreamKey& key, std::uint32_t stream) {
-  const Services& services = conversation->services();
-  services.stage.post(
-      [&hub = services.hub, key, peer = conversation->peer(), stream] { hub.unsubscribe(key, peer.get(), stream); });
 }
 
 Error no_such_stream(std::uint64_t stream) {
@@ -177,11 +174,20 @@ void update_stream(const UpdateParams& p, const std::shared_ptr<Conversation>& c
   done({protocol::encode(EmptyResult{}), {}});
 }
 
-void close_stream(const CloseParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
+void request_key(const StreamParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
   const auto stream = static_cast<std::uint32_t>(p.stream);
   const auto at = conversation->streams().find(stream);
   if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});
-  unsubscribe_later(conversation, at->second.key, stream);
+  const Services& services = conversation->services();
+  services.stage.post([&hub = services.hub, key = at->second.key] { hub.request_key(key); });
+  done({protocol::encode(EmptyResult{}), {}});
+}
+
+void close_stream(const StreamParams& p, const std::shared_ptr<Conversation>& conversation, const ConnectionDone& done) {
+  const auto stream = static_cast<std::uint32_t>(p.stream);
+  const auto at = conversation->streams().find(stream);
+  if (at == conversation->streams().end() || p.stream != stream) return done({no_such_stream(p.stream), {}});
+  conversation->unsubscribe_later(stream, at->second.key);
   conversation->streams().erase(at);
   conversation->peer()->forget_stream(stream);
   add(conversation->services().metrics.streams, -1);
@@ -210,27 +216,86 @@ Status only_of_frames(bool given, std::string_view name) {
               std::string(name));
 }
 
-streams::FrameEncoding frame_encoding(StreamEncoding encoding) {
+/// An encoding's name, and what has it.
+struct EncodingOf {
+  StreamKind kind;
+  StreamEncoding encoding;
+};
+
+bool fits(StreamKind kind, StreamEncoding encoding) noexcept {
+  constexpr std::array<EncodingOf, 9> kFitting{{{StreamKind::Pose, StreamEncoding::F32},
+                                                {StreamKind::Pose, StreamEncoding::Q16},
+                                                {StreamKind::Vertices, StreamEncoding::F32},
+                                                {StreamKind::Vertices, StreamEncoding::Q16},
+                                                {StreamKind::Vertices, StreamEncoding::Meshopt},
+                                                {StreamKind::Frames, StreamEncoding::Jpeg},
+                                                {StreamKind::Frames, StreamEncoding::Png},
+                                                {StreamKind::Frames, StreamEncoding::H264},
+                                                {StreamKind::Frames, StreamEncoding::Rgba}}};
+  return std::any_of(kFitting.begin(), kFitting.end(),
+                     [&](const EncodingOf& e) { return e.kind == kind && e.encoding == encoding; });
+}
+
+streams::VerticesEncoding vertices_encoding(StreamEncoding encoding) noexcept {
+  return encoding == StreamEncoding::Q16       ? streams::VerticesEncoding::Q16
+         : encoding == StreamEncoding::Meshopt ? streams::VerticesEncoding::Meshopt
+                                               : streams::VerticesEncoding::F32;
+}
+
+streams::FrameEncoding frame_encoding(StreamEncoding encoding) noexcept {
   return encoding == StreamEncoding::Png    ? streams::FrameEncoding::Png
+         : encoding == StreamEncoding::H264 ? streams::FrameEncoding::H264
          : encoding == StreamEncoding::Rgba ? streams::FrameEncoding::Rgba
                                             : streams::FrameEncoding::Jpeg;
+}
+
+/// Half a pixel of colour can't be written.
+Status check_h264(render::Size size) {
+  if (!render::has_h264()) {
+    return fail(ErrorCode::Unavailable,
+                "expected a server that was built with H.264, found one without (CMake option TWEEND_H264); ask for jpeg");
+  }
+  const auto even = [](std::uint32_t side, const char* name) -> Status {
+    if (side % 2 == 0) return {};
+    return fail(ErrorCode::InvalidParams, fmt::format("expected an even number of pixels with h264, found {}", side),
+                std::string("params.") + name);
+  };
+  TWEEND_TRY(even(size.width, "width"));
+  return even(size.height, "height");
 }
 
 }  // namespace
 
 Status StreamOpenParams::check() const {
-  const bool f32 = encoding.value_or(StreamEncoding::F32) == StreamEncoding::F32;
-  if (kind == StreamKind::Frames) {
-    if (!encoding || !f32) return {};
-    return fail(ErrorCode::InvalidParams, "expected jpeg, png or rgba with a stream of frames, found f32", "encoding");
-  }
-  if (!f32)
-    return fail(ErrorCode::InvalidParams, "expected f32 with a stream of a pose or of vertices, found an encoding of frames",
+  if (encoding && !fits(kind, *encoding)) {
+    constexpr std::array<const char*, 3> kExpected{"f32 or q16 with a stream of a pose",
+                                                   "f32, q16 or meshopt with a stream of vertices",
+                                                   "jpeg, png, h264 or rgba with a stream of frames"};
+    return fail(ErrorCode::InvalidParams,
+                fmt::format("expected {}, found {}", kExpected[static_cast<std::size_t>(kind)],
+                            protocol::EnumNames<StreamEncoding>::kNames[static_cast<std::size_t>(*encoding)]),
                 "encoding");
+  }
+  if (bitrate && encoding != StreamEncoding::H264) {
+    return fail(ErrorCode::InvalidParams, "expected bitrate with h264 frames, found it with another encoding", "bitrate");
+  }
+  if (adaptive.value_or(false) && (encoding.value_or(StreamEncoding::Jpeg) != StreamEncoding::Jpeg ||
+                                   delivery.value_or(StreamDelivery::Latest) != StreamDelivery::Latest)) {
+    return fail(ErrorCode::InvalidParams, "expected adaptive with jpeg frames delivered as latest, found it with others",
+                "adaptive");
+  }
+  if (kind == StreamKind::Frames) return {};
   TWEEND_TRY(only_of_frames(width.has_value(), "width"));
   TWEEND_TRY(only_of_frames(height.has_value(), "height"));
   TWEEND_TRY(only_of_frames(quality.has_value(), "quality"));
+  TWEEND_TRY(only_of_frames(adaptive.has_value(), "adaptive"));
   return only_of_frames(camera.has_value(), "camera");
+}
+
+StreamPolicy StreamOpenParams::policy() const noexcept {
+  const bool every = delivery.value_or(StreamDelivery::Latest) == StreamDelivery::Every;
+  const bool jpeg = kind == StreamKind::Frames && encoding.value_or(StreamEncoding::Jpeg) == StreamEncoding::Jpeg;
+  return {.every = every, .adaptive = jpeg && !every && adaptive.value_or(true)};
 }
 
 Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::StageView& view, const Services& services) {
@@ -241,13 +306,14 @@ Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::St
   if (p.kind == StreamKind::Vertices) {
     TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
     if (!actor->model->mesh) return no_mesh(*actor);
-    key.what = streams::VerticesSpec{actor->name};
+    key.what = streams::VerticesSpec{actor->name, vertices_encoding(p.encoding.value_or(StreamEncoding::F32))};
     return key;
   }
   if (p.kind == StreamKind::Pose) {
     TWEEND_ASSIGN(const model::ActorPtr actor, find_actor(*scene->scene, p.actor));
     if (!actor->model->skeleton) return no_skeleton(*actor);
-    key.what = streams::PoseSpec{actor->name};
+    key.what = streams::PoseSpec{actor->name,
+                                 p.encoding == StreamEncoding::Q16 ? streams::PoseEncoding::Q16 : streams::PoseEncoding::F32};
     return key;
   }
   streams::FramesSpec frames;
@@ -259,6 +325,8 @@ Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::St
   frames.encoding = frame_encoding(p.encoding.value_or(StreamEncoding::Jpeg));
   // Only of a JPEG is there a quality to tell producers apart by.
   if (frames.encoding == streams::FrameEncoding::Jpeg) frames.quality = static_cast<int>(p.quality.value_or(kDefaultQuality));
+  if (frames.encoding == streams::FrameEncoding::H264) TWEEND_TRY(check_h264(frames.size));
+  frames.bit_rate = p.bitrate.value_or(0);
   if (p.camera) {
     TWEEND_TRY(check_own_camera(*p.camera, *scene->scene));
     frames.camera = p.camera->request();
@@ -280,6 +348,7 @@ void open_stream(const StreamOpenParams& p, const std::shared_ptr<Conversation>&
   if (const Status fits = check_pixels(*key, *conversation); !fits) return done({fits.error(), {}});
   const std::uint32_t stream = conversation->next_stream();
   conversation->streams()[stream] = {*key, false};
+  conversation->peer()->expect_stream(stream, p.policy());
   add(services.metrics.streams);
   services.workers.post([conversation, stream, key = *key, view = view->find(key->scene), done] {
     conversation->to_network()([conversation, stream, text = open_result(stream, key, *view), done] {
@@ -297,7 +366,9 @@ void add_stream_commands(std::vector<Command>& t) {
                                                                              "Be sent what is shown, packet by packet."));
   t.push_back(
       connection_command<EmptyResult, UpdateParams, &update_stream>("stream.update", "Change a stream's rate or camera."));
-  t.push_back(connection_command<EmptyResult, CloseParams, &close_stream>("stream.close", "End a stream."));
+  t.push_back(connection_command<EmptyResult, StreamParams, &request_key>("stream.request_key",
+                                                                          "Be sent a packet soon that decodes on its own."));
+  t.push_back(connection_command<EmptyResult, StreamParams, &close_stream>("stream.close", "End a stream."));
 }
 
 }  // namespace tweend::commands

@@ -14,6 +14,7 @@
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
 #include "server/net/actor_routes.hpp"
+#include "server/net/clip_routes.hpp"
 #include "server/net/picture_routes.hpp"
 #include "server/net/same_origin.hpp"
 
@@ -34,7 +35,9 @@ class RpcPeer final : public commands::Peer {
   void send_shared(std::shared_ptr<const std::string>) override {}
   void send_after_packets(std::shared_ptr<const std::string>) override {}
   [[nodiscard]] bool congested() const noexcept override { return false; }
+  void expect_stream(std::uint32_t, commands::StreamPolicy) override {}
   void forget_stream(std::uint32_t) override {}
+  void flush() override {}
   void offer(std::uint32_t, const streams::PacketPtr&) override {}
   void ended(std::uint32_t, const std::string&) override {}
 
@@ -105,14 +108,15 @@ HttpResponse answer_get(const HttpRequest& request, std::string_view path, Sessi
     return http_answer(request, 200, kText, "ready\n");
   }
   if (path == "/metrics") {
-    return http_answer(request, 200, "text/plain; version=0.0.4; charset=utf-8", context.services.metrics.prometheus_text());
+    return http_answer(request, 200, "text/plain; version=0.0.4; charset=utf-8",
+                       context.services.metrics.prometheus_text() + context.services.hub.meters().prometheus_text());
   }
   if (path == "/openrpc.json") return http_answer(request, 200, kJson, *commands::openrpc_document());
   if (const WebFile* file = context.web.find(path)) return answer_file(request, *file);
   if (path == "/") return http_answer(request, 200, kText, welcome());
   return http_answer(request, 404, kText,
                      fmt::format("expected /, /healthz, /readyz, /metrics, /openrpc.json, /rpc, /ws, /scenes/SCENE/frame.png, "
-                                 "frame.jpg, stream.mjpg or actors/ACTOR.glb, found {}\n",
+                                 "frame.jpg, stream.mjpg, clip.mp4 or actors/ACTOR.glb, found {}\n",
                                  path));
 }
 
@@ -144,7 +148,7 @@ std::size_t body_limit(std::string_view target, const Limits& limits) noexcept {
   return path_of(target) == "/rpc" ? limits.message_bytes : 1U << 20U;
 }
 
-asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& context) {
+asio::awaitable<HttpResponse> route(const HttpRequest& request, Tcp::socket& socket, SessionContext& context) {
   const std::string_view path = path_of(request.target());
   if (path == "/rpc") {
     if (request.method() == http::verb::post) co_return co_await answer_rpc(request, context);
@@ -164,6 +168,7 @@ asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& 
   }
   if (const auto scene = parse_scene_path(path)) {
     if (scene->leaf == "frame.png" || scene->leaf == "frame.jpg") co_return co_await answer_frame(request, *scene, context);
+    if (scene->leaf == "clip.mp4") co_return co_await answer_clip(request, *scene, socket, context);
     // A GET of it never comes here: it becomes a session of its own.
     if (scene->leaf == "stream.mjpg") co_return answer_stream_head(request, *scene, context);
     if (const auto actor = parse_actor_file(*scene)) co_return co_await answer_actor_file(request, *scene, *actor, context);

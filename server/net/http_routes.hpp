@@ -6,6 +6,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/net/connection.hpp"
 #include "server/net/session_context.hpp"
 
 namespace tweend::net {
@@ -24,6 +25,7 @@ using HttpResponse = boost::beast::http::response<boost::beast::http::string_bod
 [[nodiscard]] std::size_t body_limit(std::string_view target, const Limits& limits) noexcept;
 
 /// Answers a request that is not an upgrade.
-boost::asio::awaitable<HttpResponse> route(const HttpRequest& request, SessionContext& context);
+/// @param socket  the client's: only to look whether it is still there
+boost::asio::awaitable<HttpResponse> route(const HttpRequest& request, Tcp::socket& socket, SessionContext& context);
 
 }  // namespace tweend::net

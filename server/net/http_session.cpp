@@ -112,7 +112,7 @@ asio::awaitable<Next> serve_requests(beast::tcp_stream& stream, beast::flat_buff
       auto prepared = prepare_stream(request, *path, context);
       if (auto* params = std::get_if<commands::StreamOpenParams>(&prepared)) co_return std::move(*params);
       if (!co_await write(stream, std::get<HttpResponse>(prepared), metrics)) co_return Next();
-    } else if (!co_await write(stream, co_await route(request, context), metrics)) {
+    } else if (!co_await write(stream, co_await route(request, stream.socket(), context), metrics)) {
       co_return Next();
     }
     // While the server stops, reading ends by itself behind the requests that have arrived.

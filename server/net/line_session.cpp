@@ -101,11 +101,12 @@ asio::awaitable<void> run_line_session(Tcp::socket socket, std::string received,
   std::string buffer = std::move(received);
   bool refused = false;
   while (connection->open()) {
-    if (!reader.take_lines(buffer)) {
+    if (connection->dismissed()) {
+      buffer.clear();  // nothing of it is heard
+    } else if (!reader.take_lines(buffer)) {
       refused = true;
       break;
-    }
-    if (!connection->conversation().wants_more()) {
+    } else if (!connection->conversation().wants_more()) {
       co_await connection->ready_for_more();
       continue;
     }
@@ -117,7 +118,8 @@ asio::awaitable<void> run_line_session(Tcp::socket socket, std::string received,
     add(context.services.metrics.bytes_received_total, static_cast<std::int64_t>(bytes));
     if (!error) continue;
     // A last line may come without its end: `printf '{…}' | nc` is answered too.
-    if (error == asio::error::eof && connection->open() && !buffer.empty()) static_cast<void>(reader.take(buffer));
+    if (error == asio::error::eof && connection->open() && !connection->dismissed() && !buffer.empty())
+      static_cast<void>(reader.take(buffer));
     break;
   }
   co_await connection->finish(kFarewell);

@@ -1,39 +1,60 @@
 #pragma once
 
+#include <sys/uio.h>
+
 #include <array>
-#include <boost/asio/buffer.hpp>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "server/base/metrics.hpp"
-#include "server/streams/packet.hpp"
+#include "server/net/data_lane.hpp"
+#include "server/net/framing.hpp"
 
 namespace tweend::net {
 
-/// How messages and packets are delimited on a connection.
-enum class Framing : std::uint8_t {
-  Line,       ///< text and '\n'; a packet behind the line that announces it
-  WebSocket,  ///< RFC 6455 frames, unmasked: text messages and binary packets
-  Multipart,  ///< RFC 2046 parts of an HTTP answer, one a picture; there is no place for messages, which are dropped
+/// The messages of one gathered write: large, and so on the stack of whoever writes, where it is warm for all connections.
+class Gathered {
+ public:
+  static constexpr std::size_t kMostMessages = 32;
+
+  /// For sendmsg(). Valid until the outbox changes.
+  [[nodiscard]] std::span<iovec> buffers() noexcept { return {buffers_.data(), buffer_count_}; }
+  [[nodiscard]] std::size_t bytes() const noexcept { return bytes_; }
+  [[nodiscard]] std::size_t messages() const noexcept { return message_count_; }
+
+ private:
+  friend class Outbox;
+  struct Message {
+    std::size_t bytes;
+    bool data;  ///< else of the control lane
+  };
+  [[nodiscard]] bool full() const noexcept { return message_count_ == kMostMessages; }
+  void begin_message(bool data, std::size_t skipped) noexcept;
+  void add(const void* bytes, std::size_t size) noexcept;
+
+  // Not initialised: only the first so many of each are meant.
+  std::array<iovec, 3 * kMostMessages> buffers_;
+  std::array<Message, kMostMessages> all_;
+  std::array<std::array<char, kMostPrefixBytes>, kMostMessages> prefixes_;
+  std::size_t buffer_count_ = 0;
+  std::size_t message_count_ = 0;
+  std::size_t bytes_ = 0;
+  std::size_t skip_ = 0;  ///< bytes that were written before, of the message in the making
 };
 
-/// What stands between the parts of a Multipart answer.
-#define TWEEND_BOUNDARY "tweend-frame"
-inline constexpr std::string_view kMultipartType = "multipart/x-mixed-replace; boundary=" TWEEND_BOUNDARY;
-inline constexpr std::string_view kMultipartBegin = "--" TWEEND_BOUNDARY "\r\n";
-inline constexpr std::string_view kMultipartNext = "\r\n--" TWEEND_BOUNDARY "\r\n";
-#undef TWEEND_BOUNDARY
-
-/// What waits to be written to one client, in two lanes: answers and notifications first, then packets. A packet that is
-/// still waiting when a newer one of its stream comes is replaced by it, so that a slow reader skips and never falls behind.
-/// Payloads are shared with all other readers; nothing is copied but a few bytes of framing. Network thread only.
+/// What waits to be written to one client, in two lanes: answers and notifications first, then packets (DataLane). A message
+/// leaves its lane with its last byte: until its first one, whatever is more urgent or newer goes ahead of it or takes its
+/// place. Payloads are shared with all other readers; nothing is copied but a few bytes of framing, made anew for each write.
+/// Network thread only.
+///
+/// The control lane is bounded by its owner, who starts nothing more above kCongestedBytes and closes above kOverflowBytes; the
+/// data lane as data_lane.hpp says: 8 packets and 8 MiB a stream of the newest only (or one packet, whatever its size), 16 MiB
+/// of all streams of which every packet is wanted, each packet with 512 bytes for itself.
 class Outbox {
  public:
   /// Above this, the conversation starts nothing more until the client has read.
@@ -41,7 +62,7 @@ class Outbox {
   /// Above this, a client that asked for events and does not read them is cut off.
   static constexpr std::size_t kOverflowBytes = 8U << 20U;
 
-  Outbox(Framing framing, Metrics& metrics) : framing_(framing), metrics_(metrics) {}
+  Outbox(Framing framing, Metrics& metrics) : framing_(framing), metrics_(metrics), data_(metrics) {}
 
   void push_text(std::string text);
   void push_shared(std::shared_ptr<const std::string> text);
@@ -49,54 +70,48 @@ class Outbox {
   void push_after_packets(std::shared_ptr<const std::string> text);
   /// Bytes that are framed already (Beast's handshake, pongs, closes), as one unit.
   void push_raw(std::string bytes);
-  void offer(std::uint32_t stream, const streams::PacketPtr& packet);
-  void forget_stream(std::uint32_t stream);
 
-  /// Moves the next messages to the write under way and returns their bytes; empty: nothing waits.
-  /// The buffers stay valid until written(). Precondition: no write is under way.
-  [[nodiscard]] std::span<const boost::asio::const_buffer> take();
-  void written();
+  /// The streams and their packets.
+  [[nodiscard]] DataLane& data() noexcept { return data_; }
+  [[nodiscard]] const DataLane& data() const noexcept { return data_; }
+  /// Nothing more of the data lane is sent, but for the rest of a message that has begun.
+  void drop_data();
 
-  [[nodiscard]] bool empty() const noexcept { return control_.empty() && data_.empty() && writing_.empty(); }
+  /// What is to be written next, in its order; nothing moves yet.
+  /// @param out  fresh
+  void gather(Gathered& out) const noexcept;
+  /// So many bytes of what was gathered have been written; nothing has changed in between.
+  /// @param now_us  clock reading; only adaptive streams ask for it
+  void wrote(const Gathered& gathered, std::size_t bytes, std::int64_t now_us = 0);
+
+  [[nodiscard]] bool empty() const noexcept { return control_.empty() && data_.size() == 0; }
   [[nodiscard]] bool congested() const noexcept { return control_bytes_ > kCongestedBytes; }
   [[nodiscard]] bool overflowed() const noexcept { return event_bytes_ > kOverflowBytes; }
 
  private:
-  /// One message: framing, then the body that is set.
-  struct Item {
-    std::array<char, 176> prefix;
-    std::size_t prefix_size = 0;
+  struct Control {
     std::string text;
-    std::shared_ptr<const std::string> shared;
-    streams::PacketPtr packet;
-    std::uint32_t stream = 0;
-    std::uint8_t carried_flags = 0;  ///< of packets that this one has replaced
-    std::string_view suffix;         ///< of static storage
-    bool event = false;
+    std::shared_ptr<const std::string> shared;  ///< instead of the text: a notification
+    bool raw = false;
 
-    [[nodiscard]] std::size_t body_bytes() const noexcept;
+    [[nodiscard]] const std::string& body() const noexcept { return shared ? *shared : text; }
   };
-  /// Numbering of one stream across its producers.
-  struct StreamNumbers {
-    std::uint64_t source = 0;
-    std::uint32_t base = 0;
-    std::uint32_t last = 0;
-  };
+  enum class Begun : std::uint8_t { None, Control, Data };
 
-  void frame_text(Item& item) const;
-  void frame_packet(Item& item);
-  static void frame_part(Item& item);
-  void push_control(Item item);
-  void add_buffers(const Item& item);
+  void push_control(Control item);
+  void gather_control(const Control& item, Gathered& out) const noexcept;
+  void gather_data(const DataLane::Entry& entry, bool alone, Gathered& out) const noexcept;
+  void gather_text(const std::string& body, bool raw, Gathered& out) const noexcept;
+  void pop_control();
+  void pop_data(std::int64_t now_us);
 
   const Framing framing_;
   Metrics& metrics_;
-  std::deque<Item> control_;
-  std::vector<Item> data_;  ///< at most one packet a stream: short, and its memory is kept
-  std::vector<Item> writing_;
-  std::vector<boost::asio::const_buffer> buffers_;
-  std::map<std::uint32_t, StreamNumbers> numbers_;
-  std::size_t control_bytes_ = 0;  ///< waiting or being written
+  std::deque<Control> control_;
+  DataLane data_;
+  Begun begun_ = Begun::None;      ///< the lane whose first message is partly written
+  std::size_t begun_bytes_ = 0;    ///< of it
+  std::size_t control_bytes_ = 0;  ///< waiting or being written, words about packets included
   std::size_t event_bytes_ = 0;    ///< notifications among them, which the client can't hold back
 };
 

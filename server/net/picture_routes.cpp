@@ -58,16 +58,6 @@ unsigned http_status(ErrorCode code) noexcept {
   }
 }
 
-/// The query as parameters of type P, as if they had come by JSON-RPC.
-template <class P>
-Result<P> parameters(const HttpRequest& request, std::initializer_list<Member> given, const SessionContext& context) {
-  TWEEND_ASSIGN(const std::string json, query_json(request.target(), given));
-  TWEEND_ASSIGN(const protocol::JsonValue value, protocol::JsonValue::parse(json, context.services.limits));
-  P params;
-  TWEEND_TRY(protocol::decode(value, protocol::type_of<P>(), &params, "params"));
-  return params;
-}
-
 /// Whether a text is a number of JSON.
 bool is_number(std::string_view text) {
   const bool begins = !text.empty() && (text.front() == '-' || (text.front() >= '0' && text.front() <= '9'));
@@ -144,7 +134,7 @@ Result<std::string> query_json(std::string_view target, std::initializer_list<Me
 asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const ScenePath& path, SessionContext& context) {
   const bool png = path.leaf == "frame.png";
   const auto params =
-      parameters<commands::FrameParams>(request, {{"scene", path.scene}, {"format", png ? "png" : "jpeg"}}, context);
+      query_params<commands::FrameParams>(request, {{"scene", path.scene}, {"format", png ? "png" : "jpeg"}}, context);
   if (!params) co_return refuse(request, params.error());
   const commands::Services& services = context.services;
   Result<streams::StillRequest> still = commands::still_request(*params, {services, services.stage.view(), steady_now_us()});
@@ -171,13 +161,15 @@ asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const Sce
 
 std::variant<commands::StreamOpenParams, HttpResponse> prepare_stream(const HttpRequest& request, const ScenePath& path,
                                                                       const SessionContext& context) {
-  auto params = parameters<commands::StreamOpenParams>(request, {{"scene", path.scene}, {"kind", "frames"}}, context);
+  auto params = query_params<commands::StreamOpenParams>(request, {{"scene", path.scene}, {"kind", "frames"}}, context);
   if (!params) return refuse(request, params.error());
   const auto view = context.services.stage.view();
   if (const auto key = commands::stream_key(*params, *view, context.services); !key) return refuse(request, key.error());
   if (params->encoding.value_or(commands::StreamEncoding::Jpeg) != commands::StreamEncoding::Jpeg) {
     return refuse(request, fail(ErrorCode::InvalidParams, "expected jpeg, what this path is named for", "params.encoding"));
   }
+  // Who reads pictures from a URL has said their size in it, and few players bear another one.
+  params->adaptive = false;
   return std::move(*params);
 }
 

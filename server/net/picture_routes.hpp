@@ -7,6 +7,7 @@
 #include <string_view>
 #include <variant>
 
+#include "protocol/json_value.hpp"
 #include "server/commands/stream_types.hpp"
 #include "server/net/connection.hpp"
 #include "server/net/http_routes.hpp"
@@ -34,6 +35,16 @@ struct Member {
 /// says who asks and not what for, is left out.
 /// @return InvalidParams where the query says what the path says, or says something twice
 [[nodiscard]] Result<std::string> query_json(std::string_view target, std::initializer_list<Member> given);
+/// The query as parameters of type P, as if they had come by JSON-RPC.
+template <class P>
+[[nodiscard]] Result<P> query_params(const HttpRequest& request, std::initializer_list<Member> given,
+                                     const SessionContext& context) {
+  TWEEND_ASSIGN(const std::string json, query_json(request.target(), given));
+  TWEEND_ASSIGN(const protocol::JsonValue value, protocol::JsonValue::parse(json, context.services.limits));
+  P params;
+  TWEEND_TRY(protocol::decode(value, protocol::type_of<P>(), &params, "params"));
+  return params;
+}
 
 /// GET frame.png and frame.jpg: one picture.
 boost::asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const ScenePath& path, SessionContext& context);

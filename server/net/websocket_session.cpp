@@ -62,7 +62,12 @@ asio::awaitable<void> run_websocket_session(Tcp::socket socket, http::request<ht
     if (!connection->open()) break;
     const auto [error, bytes] = co_await ws.async_read(buffer, kAwait);
     add(context.services.metrics.bytes_received_total, static_cast<std::int64_t>(bytes));
-    if (error) break;  // closed, reset, timed out, too long: Beast has said what there was to say
+    if (error) break;                // closed, reset, timed out, too long: Beast has said what there was to say
+    if (!connection->open()) break;  // a write has failed meanwhile, and what was read had come before
+    if (connection->dismissed()) {
+      buffer.consume(buffer.size());
+      continue;
+    }
     if (!ws.got_text()) {
       const websocket::close_reason reason(websocket::close_code::unknown_data, "expected text messages, found a binary one");
       static_cast<void>(co_await ws.async_close(reason, kAwait));

@@ -2,10 +2,15 @@
 
 #include <boost/asio/io_context.hpp>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "protocol/pose_q16.hpp"
+#include "protocol/vertices_meshopt.hpp"
 #include "server/base/worker_pool.hpp"
 #include "server/model/evaluate.hpp"
 #include "server/streams/content.hpp"
+#include "server/streams/stream_key.hpp"
 
 namespace tweend::streams {
 
@@ -23,8 +28,8 @@ class ActorContent : public Content {
   [[nodiscard]] std::string what_is_gone() const final;
 
  protected:
-  /// Sets the header's kind and encoding and fills the payload. On a worker.
-  virtual void fill(const stage::ActorShow& show, model::Evaluator& evaluator, Packet& packet) const = 0;
+  /// Sets the header's kind and encoding and fills the payload. On a worker, one packet at a time.
+  virtual void fill(const stage::ActorShow& show, model::Evaluator& evaluator, Packet& packet) = 0;
 
  private:
   void evaluate();
@@ -43,23 +48,36 @@ class ActorContent : public Content {
   NewPacketPtr packet_;
 };
 
-/// An actor's vertices: positions, then normals, 32-bit floats.
+/// An actor's vertices.
 class VerticesContent final : public ActorContent {
  public:
-  using ActorContent::ActorContent;
+  VerticesContent(std::string scene, const VerticesSpec& spec, boost::asio::io_context& strand, WorkerPool& workers,
+                  ContentOwner& owner)
+      : ActorContent(std::move(scene), spec.actor, strand, workers, owner), encoding_(spec.encoding) {}
+  [[nodiscard]] bool chained() const noexcept override { return encoding_ == VerticesEncoding::Meshopt; }
 
  private:
-  void fill(const stage::ActorShow& show, model::Evaluator& evaluator, Packet& packet) const override;
+  void fill(const stage::ActorShow& show, model::Evaluator& evaluator, Packet& packet) override;
+
+  const VerticesEncoding encoding_;
+  std::vector<float> floats_;  ///< what is to be encoded: positions, then normals
+  protocol::VerticesMeshoptEncoder meshopt_;
 };
 
-/// An actor's pose: translation, rotation and scale of each joint in the skeleton's order, then the morph weights, 32-bit
-/// floats.
+/// An actor's pose: of each joint in the skeleton's order, then the morph weights.
 class PoseContent final : public ActorContent {
  public:
-  using ActorContent::ActorContent;
+  PoseContent(std::string scene, const PoseSpec& spec, boost::asio::io_context& strand, WorkerPool& workers,
+              ContentOwner& owner)
+      : ActorContent(std::move(scene), spec.actor, strand, workers, owner), encoding_(spec.encoding) {}
+  [[nodiscard]] bool chained() const noexcept override { return encoding_ == PoseEncoding::Q16; }
 
  private:
-  void fill(const stage::ActorShow& show, model::Evaluator& evaluator, Packet& packet) const override;
+  void fill(const stage::ActorShow& show, model::Evaluator& evaluator, Packet& packet) override;
+
+  const PoseEncoding encoding_;
+  std::vector<float> floats_;  ///< what is to be encoded: joints, then weights
+  protocol::PoseQ16Encoder q16_;
 };
 
 }  // namespace tweend::streams

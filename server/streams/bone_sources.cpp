@@ -45,7 +45,7 @@ glm::vec3 side_of(const animation::Affine& parent, const glm::mat4& world_from_m
 }  // namespace
 
 void add_bones(const model::Skeleton& skeleton, std::span<const animation::Affine> model_from_joint,
-               const glm::mat4& world_from_model, float focus_m, std::vector<render::BoneSource>& out) {
+               const glm::mat4& world_from_model, std::vector<render::BoneSource>& out) {
   const std::size_t first = out.size();
   const std::span<const std::int32_t> parents = skeleton.parent_places();
   float length_of_all_m = 0.0F;
@@ -66,8 +66,14 @@ void add_bones(const model::Skeleton& skeleton, std::span<const animation::Affin
     length_of_all_m += length_m;
     ++bones;
   }
-  const float lone_m = bones > 0 ? kBallOfBone * length_of_all_m / static_cast<float>(bones) : kBallOfFocus * focus_m;
+  const float lone_m = bones > 0 ? kBallOfBone * length_of_all_m / static_cast<float>(bones) : 0.0F;
   for (std::size_t i = first; i < out.size(); ++i) out[i].radius = out[i].radius > 0.0F ? kBallOfBone * out[i].radius : lone_m;
+}
+
+void size_lone_balls(float focus_m, std::vector<render::BoneSource>& bones) {
+  for (render::BoneSource& bone : bones) {
+    if (!(bone.radius > 0.0F)) bone.radius = kBallOfFocus * focus_m;
+  }
 }
 
 }  // namespace tweend::streams

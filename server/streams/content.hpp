@@ -45,10 +45,15 @@ class Content {
   /// Reads the show; kept for begin().
   [[nodiscard]] virtual ContentReading read(ClockUs at_us) = 0;
   /// Starts to make a packet of what was read last: sets the header's kind and encoding, fills the payload and says so.
+  /// Where the header's key flag is set it has to decode on its own; a content that can't but do so sets it.
   /// @param deadline_us  when it should be done
   virtual void begin(NewPacketPtr packet, ClockUs deadline_us) = 0;
-  /// The viewer looks from elsewhere.
+  /// Whether a packet without the key flag needs the one before it.
+  [[nodiscard]] virtual bool chained() const noexcept { return false; }
+  /// Goes on with another key, which differs in what same_but_view() leaves out.
   virtual void look_from(const StreamKey&) {}
+  /// Whether what is begun next is to be as good as was asked for, though the key says less (a rung of the ladder).
+  virtual void refine(bool) {}
   /// Why follow() said no, for the client.
   [[nodiscard]] virtual std::string what_is_gone() const = 0;
 };

@@ -1,7 +1,6 @@
 #include "server/streams/frame_composer.hpp"
 
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <span>
 
 #include "server/streams/bone_sources.hpp"
@@ -46,33 +45,17 @@ bool set_keyframes(const stage::ActorShow& show, render::DrawItem& item) {
   return true;
 }
 
-render::View view_of(const model::Camera& camera, render::Size size) noexcept {
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  return {model::view_from_world(camera), model::clip_from_view(camera, aspect), camera.eye,
-          glm::distance(camera.eye, camera.target)};
-}
-
 }  // namespace
-
-model::Camera FrameComposer::camera_of(const model::ScenePtr& scene, const std::optional<model::CameraRequest>& own,
-                                       render::Size size) {
-  const model::Camera& of_scene = scene->settings.camera;
-  if (!own) return of_scene;
-  if (own->fit && fitted_ != scene) {
-    fitted_ = scene;
-    visible_ = model::visible_bounds(*scene);
-  }
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  const auto placed = model::place(of_scene, *own, visible_, aspect);
-  return placed ? *placed : of_scene;
-}
 
 void FrameComposer::compose(const stage::Show& show, const std::optional<model::CameraRequest>& camera, render::Size size,
                             render::Picture& out) {
+  compose(show, out);
+  look_.look(show.scene, camera, size, out);
+}
+
+void FrameComposer::compose(const stage::Show& show, render::Picture& out) {
   const model::SceneSettings& settings = show.scene->settings;
   const model::Light& light = settings.light;
-  out.size = size;
-  out.view = view_of(camera_of(show.scene, camera, size), size);
   out.light = {light.position, light.ambient, light.diffuse, light.specular, light.shininess};
   out.background = settings.background;
   out.grid = settings.grid;
@@ -107,7 +90,7 @@ void FrameComposer::add_actor(const stage::ActorShow& show, Slot& slot, render::
   if (!model.skeleton || (slot.source && !actor.settings.show_skeleton)) return;
   const bool known = slot.source && posed;
   const auto joints = known ? slot.evaluator.last_joints() : slot.evaluator.model_from_joint(actor, show.shown);
-  add_bones(*model.skeleton, joints, world_from_model, out.view.focus_m, slot.source ? out.bones_over : out.bones);
+  add_bones(*model.skeleton, joints, world_from_model, slot.source ? out.bones_over : out.bones);
 }
 
 void FrameComposer::set_pose(const stage::ActorShow& show, Slot& slot, render::DrawItem& item) {

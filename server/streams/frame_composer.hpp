@@ -7,6 +7,7 @@
 #include "server/model/camera.hpp"
 #include "server/model/evaluate.hpp"
 #include "server/stage/show.hpp"
+#include "server/streams/scene_look.hpp"
 
 namespace tweend::streams {
 
@@ -15,7 +16,9 @@ namespace tweend::streams {
 /// last as long as the show, this composer, and until it composes again.
 class FrameComposer {
  public:
-  /// @param camera  empty, or one that can show nothing of this scene: the scene's
+  /// What is there, whoever looks: all of a picture but its size and view.
+  void compose(const stage::Show& show, render::Picture& out);
+  /// The same and a look at it.
   void compose(const stage::Show& show, const std::optional<model::CameraRequest>& camera, render::Size size,
                render::Picture& out);
 
@@ -31,12 +34,8 @@ class FrameComposer {
   static void set_pose(const stage::ActorShow& show, Slot& slot, render::DrawItem& item);
   static void set_vertices(const stage::ActorShow& show, Slot& slot, render::DrawItem& item);
 
-  [[nodiscard]] model::Camera camera_of(const model::ScenePtr& scene, const std::optional<model::CameraRequest>& own,
-                                        render::Size size);
-
   std::vector<Slot> slots_;  ///< by the actor's index
-  model::ScenePtr fitted_;   ///< what `visible_` holds; it takes a look at every keyframe
-  std::optional<model::Bounds> visible_;
+  SceneLook look_;
 };
 
 }  // namespace tweend::streams

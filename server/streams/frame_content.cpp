@@ -5,6 +5,8 @@
 #include <cstring>
 #include <utility>
 
+#include "server/streams/rungs.hpp"
+
 namespace tweend::streams {
 namespace {
 
@@ -14,6 +16,8 @@ std::uint8_t encoding_number(FrameEncoding encoding) noexcept {
       return protocol::kFrameJpeg;
     case FrameEncoding::Png:
       return protocol::kFramePng;
+    case FrameEncoding::H264:
+      return protocol::kFrameH264;
     case FrameEncoding::Rgba:
       return protocol::kFrameRgba;
   }
@@ -38,53 +42,44 @@ ClockUs FrameContent::earliest_us() const noexcept {
 }
 
 ContentReading FrameContent::read(ClockUs at_us) {
-  stage::show_at(*view_, at_us, show_);
+  moment_ = desk_.moment(view_, at_us);
+  const auto& actors = moment_->show.actors;
   ContentReading reading;
-  for (const stage::ActorShow& actor : show_.actors) {
+  for (const stage::ActorShow& actor : actors) {
     if (!actor.actor->settings.visible) continue;
     reading.moving = reading.moving || actor.moving || actor.turning;
     // Mixed, not summed: one player's wrap forwards and another's backwards are two jumps and not none.
     constexpr std::uint64_t kOdd = 0x9E3779B97F4A7C15U;
     reading.continuity = (reading.continuity ^ actor.continuity) * kOdd;
   }
-  const auto named = std::find_if(show_.actors.begin(), show_.actors.end(),
-                                  [this](const stage::ActorShow& a) { return a.actor->name == spec_.actor; });
-  if (named != show_.actors.end()) {
+  const auto named =
+      std::find_if(actors.begin(), actors.end(), [this](const stage::ActorShow& a) { return a.actor->name == spec_.actor; });
+  if (named != actors.end()) {
     reading.time_s = named->time_s;
-  } else if (!show_.actors.empty()) {
-    reading.time_s = show_.actors.front().time_s;
+  } else if (!actors.empty()) {
+    reading.time_s = actors.front().time_s;
   }
   return reading;
 }
 
 void FrameContent::begin(NewPacketPtr packet, ClockUs deadline_us) {
-  drawing_packet_ = std::move(packet);
-  drawing_packet_->header.kind = protocol::PacketKind::Frame;
-  drawing_packet_->header.encoding = encoding_number(spec_.encoding);
-  camera_ = spec_.camera;
-  deadline_us_ = deadline_us;
-  workers_.post([this] { compose(); });
+  const std::size_t rung = refined_ ? 0 : spec_.rung;
+  drawing_ = {std::move(packet), quality_on_rung(spec_.quality, rung)};
+  drawing_.packet->header.kind = protocol::PacketKind::Frame;
+  drawing_.packet->header.encoding = encoding_number(spec_.encoding);
+  desk_.draw(std::exchange(moment_, nullptr), spec_.camera, size_on_rung(spec_.size, rung), deadline_us, shared_from_this());
 }
 
-void FrameContent::compose() {
-  composer_.compose(show_, camera_, spec_.size, picture_);
-  renderer_.submit(shared_from_this(), deadline_us_);
-}
-
-void FrameContent::drawn(Result<render::PixelsPtr> pixels) noexcept {
-  pixels_ = std::move(pixels);
-  boost::asio::post(strand_, [this] { drawn_on_strand(); });
-}
-
-void FrameContent::drawn_on_strand() {
+void FrameContent::drawn(const Result<render::PixelsPtr>& pixels) {
+  pixels_ = pixels;
   waiting_ = true;
   if (!encoding_) encode_next();
 }
 
 void FrameContent::encode_next() {
   waiting_ = false;
-  encoding_packet_ = std::move(drawing_packet_);
-  encoding_pixels_ = std::move(pixels_);
+  encoded_ = std::move(drawing_);
+  encoding_pixels_ = std::exchange(pixels_, render::PixelsPtr());
   owner_.ready();
   if (encoding_pixels_) {
     encoding_ = true;
@@ -96,15 +91,17 @@ void FrameContent::encode_next() {
 }
 
 void FrameContent::encode() {
-  outcome_ = write((*encoding_pixels_)->view(), encoding_packet_->payload);
+  outcome_ = write((*encoding_pixels_)->view(), *encoded_.packet);
   encoding_pixels_ = render::PixelsPtr();
   boost::asio::post(strand_, [this] { encoded(); });
 }
 
-Status FrameContent::write(const render::ImageView& image, Payload& payload) {
+Status FrameContent::write(const render::ImageView& image, Packet& packet) {
+  Payload& payload = packet.payload;
+  if (spec_.encoding == FrameEncoding::H264) return write_h264(image, packet);
   if (spec_.encoding == FrameEncoding::Jpeg) {
     TWEEND_ASSIGN(const std::size_t bytes,
-                  jpeg_.encode(image, spec_.quality, payload.resize(render::JpegEncoder::most_bytes(image.size))));
+                  jpeg_.encode(image, encoded_.quality, payload.resize(render::JpegEncoder::most_bytes(image.size))));
     payload.truncate(bytes);
   } else if (spec_.encoding == FrameEncoding::Png) {
     TWEEND_ASSIGN(const std::vector<std::byte> file, render::encode_png(image));
@@ -118,9 +115,21 @@ Status FrameContent::write(const render::ImageView& image, Payload& payload) {
   return {};
 }
 
+Status FrameContent::write_h264(const render::ImageView& image, Packet& packet) {
+  if (!h264_) {
+    TWEEND_ASSIGN(render::H264Encoder encoder,
+                  render::H264Encoder::open({.size = image.size, .rate = rate_, .bit_rate = spec_.bit_rate, .live = true}));
+    h264_ = std::move(encoder);
+  }
+  TWEEND_ASSIGN(const render::H264Encoder::Unit unit, h264_->encode(image, (packet.header.flags & protocol::kFlagKey) != 0));
+  std::memcpy(packet.payload.resize(unit.bytes.size()).data(), unit.bytes.data(), unit.bytes.size());
+  if (unit.key) packet.header.flags = static_cast<std::uint8_t>(packet.header.flags | protocol::kFlagKey);
+  return {};
+}
+
 void FrameContent::encoded() {
   encoding_ = false;
-  NewPacketPtr packet = std::move(encoding_packet_);
+  NewPacketPtr packet = std::move(encoded_.packet);
   // Once nothing is in the making any more, made() may be the last to hold this.
   const bool another = waiting_;
   if (outcome_) {

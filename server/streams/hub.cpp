@@ -18,24 +18,32 @@ constexpr double kSlowRate = 5.0;
 }  // namespace
 
 Hub::Hub(stage::Stage& stage, WorkerPool& workers, render::RenderThread& renderer, Post deliver, Metrics& metrics)
-    : stage_(stage), workers_(workers), renderer_(renderer), mailbox_(std::move(deliver)), metrics_(metrics) {}
+    : stage_(stage),
+      workers_(workers),
+      desk_(stage.strand(), workers, renderer),
+      mailbox_(std::move(deliver)),
+      metrics_(metrics) {}
 
 Hub::Producers::iterator Hub::find(const StreamKey& key) {
   return std::find_if(producers_.begin(), producers_.end(), [&key](const auto& p) { return p->key() == key; });
 }
 
 std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key) {
-  const Producer::Environment environment{stage_.strand(), mailbox_, metrics_, [this] { progressed(); },
-                                          [this] { drop_idle(); }};
-  return std::make_shared<Producer>(key, ++last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
+  ++last_source_;
+  const Producer::Environment environment{stage_.strand(),
+                                          mailbox_,
+                                          metrics_,
+                                          [this] { progressed(); },
+                                          [this] { drop_idle(); },
+                                          meters_.add(fmt::format("producer=\"{}\",{}", last_source_, labels_of(key)))};
+  return std::make_shared<Producer>(key, last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
     if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
-      return std::make_shared<FrameContent>(*frames, stage_.strand(), workers_, renderer_, owner);
+      return std::make_shared<FrameContent>(*frames, key.rate, stage_.strand(), workers_, desk_, owner);
     }
     if (const auto* pose = std::get_if<PoseSpec>(&key.what)) {
-      return std::make_shared<PoseContent>(key.scene, pose->actor, stage_.strand(), workers_, owner);
+      return std::make_shared<PoseContent>(key.scene, *pose, stage_.strand(), workers_, owner);
     }
-    return std::make_shared<VerticesContent>(key.scene, std::get<VerticesSpec>(key.what).actor, stage_.strand(), workers_,
-                                             owner);
+    return std::make_shared<VerticesContent>(key.scene, std::get<VerticesSpec>(key.what), stage_.strand(), workers_, owner);
   });
 }
 
@@ -64,6 +72,10 @@ void Hub::unsubscribe(const StreamKey& key, const PacketSink* sink, std::uint32_
   if ((*at)->idle()) drop_idle();
 }
 
+void Hub::request_key(const StreamKey& key) {
+  if (const auto at = find(key); at != producers_.end()) (*at)->request_key();
+}
+
 void Hub::retune(const StreamKey& from, const StreamKey& to, Subscription subscription) {
   const auto held = subscription.sink.lock();
   const auto at = find(from);
@@ -88,10 +100,11 @@ void Hub::follow(const std::string& scene, const stage::SceneViewPtr& view) {
 }
 
 void Hub::drop_idle() {
-  std::erase_if(producers_, [](const std::shared_ptr<Producer>& producer) {
+  const std::size_t dropped = std::erase_if(producers_, [](const std::shared_ptr<Producer>& producer) {
     if (producer->idle()) producer->stop();
     return producer->idle();
   });
+  if (dropped > 0) desk_.trim();
   metrics_.producers = static_cast<std::int64_t>(producers_.size());
   progressed();  // nobody waits for a producer that is gone
 }
@@ -126,6 +139,7 @@ void Hub::progressed() {
 void Hub::stop() {
   for (const auto& producer : producers_) producer->stop();
   producers_.clear();
+  desk_.stop();
   for (Waiter& w : std::exchange(waiters_, {})) w.then();
 }
 

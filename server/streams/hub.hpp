@@ -10,7 +10,9 @@
 #include "server/base/metrics.hpp"
 #include "server/base/worker_pool.hpp"
 #include "server/stage/stage.hpp"
+#include "server/streams/picture_desk.hpp"
 #include "server/streams/producer.hpp"
+#include "server/streams/stream_meter.hpp"
 
 namespace tweend::streams {
 
@@ -24,8 +26,10 @@ class Hub {
   /// The first packet follows at once. An actor that has gone meanwhile ends the stream.
   void subscribe(const StreamKey& key, Subscription subscription);
   void unsubscribe(const StreamKey& key, const PacketSink* sink, std::uint32_t stream);
-  /// A stream goes on with another rate or camera. A viewer that nobody else looks with takes its producer along: a camera
-  /// that is dragged starts none anew.
+  /// Somebody needs a packet that decodes on its own.
+  void request_key(const StreamKey& key);
+  /// A stream goes on with another rate, camera or rung. A viewer that nobody else looks with takes its producer along: a
+  /// camera that is dragged starts none anew.
   void retune(const StreamKey& from, const StreamKey& to, Subscription subscription);
 
   /// The stage has published a view (null: the scene is gone).
@@ -35,6 +39,9 @@ class Hub {
   void after_delivery(const stage::SceneViewPtr& view, std::function<void()> then);
   /// Ends all producers, before the strand stops.
   void stop();
+
+  /// What has become of each producer's packets. Any thread.
+  [[nodiscard]] const StreamMeters& meters() const noexcept { return meters_; }
 
  private:
   struct Waiter {
@@ -52,9 +59,10 @@ class Hub {
 
   stage::Stage& stage_;
   WorkerPool& workers_;
-  render::RenderThread& renderer_;
+  PictureDesk desk_;
   Mailbox mailbox_;
   Metrics& metrics_;
+  StreamMeters meters_;
   Producers producers_;
   std::vector<Waiter> waiters_;
   std::uint64_t last_source_ = 0;

@@ -1,5 +1,6 @@
 #include "server/streams/mailbox.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tweend::streams {
@@ -23,14 +24,35 @@ void Mailbox::drain() {
     const std::lock_guard lock(mutex_);
     draining_.swap(waiting_);
   }
-  for (const Entry& entry : draining_) {
-    if (entry.task) entry.task();
-    if (!entry.delivery.packet) continue;
-    for (const Subscription& s : *entry.delivery.to) {
-      if (const auto sink = s.sink.lock()) sink->offer(s.stream, entry.delivery.packet);
+  for (std::size_t i = 0; i < draining_.size();) {
+    if (draining_[i].task) draining_[i].task();
+    i = draining_[i].delivery.packet ? offer_run(i) : i + 1;
+  }
+  std::sort(touched_.begin(), touched_.end());
+  touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
+  for (const std::shared_ptr<PacketSink>& sink : touched_) sink->flush();
+  touched_.clear();
+  draining_.clear();
+}
+
+/// Offers the packets from `begin` on that go to the same list, sink by sink: each is looked up and warmed up once.
+/// @return where the next list, or a call, is
+std::size_t Mailbox::offer_run(std::size_t begin) {
+  const Subscriptions* const to = draining_[begin].delivery.to.get();
+  std::size_t end = begin + 1;
+  while (end < draining_.size() && draining_[end].delivery.to.get() == to && draining_[end].delivery.packet) ++end;
+  const bool only = begin == 0 && end == draining_.size();
+  for (const Subscription& s : *to) {
+    std::shared_ptr<PacketSink> sink = s.sink.lock();
+    if (!sink) continue;
+    for (std::size_t i = begin; i < end; ++i) sink->offer(s.stream, draining_[i].delivery.packet);
+    if (only) {
+      sink->flush();  // nothing more comes for it, and its memory is warm
+    } else {
+      touched_.push_back(std::move(sink));
     }
   }
-  draining_.clear();
+  return end;
 }
 
 }  // namespace tweend::streams

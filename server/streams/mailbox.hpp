@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <vector>
@@ -16,8 +17,8 @@ struct Delivery {
   std::shared_ptr<const Subscriptions> to;
 };
 
-/// Hands packets over to the thread of their sinks, in order: one wake-up for all that wait, and no memory taken for a packet
-/// once the lists have grown to their size. Safe from any thread; outlives the tasks it posts.
+/// Hands packets over to the thread of their sinks, in order: one wake-up for all that wait, then one flush of each sink, and
+/// no memory taken for a packet once the lists have grown to their size. Safe from any thread; outlives the tasks it posts.
 class Mailbox {
  public:
   explicit Mailbox(Post post) : post_(std::move(post)) {}
@@ -35,11 +36,14 @@ class Mailbox {
     Task task;
   };
   void append(Entry entry);
+  std::size_t offer_run(std::size_t begin);
 
   const Post post_;
   std::mutex mutex_;
   std::vector<Entry> waiting_;
-  std::vector<Entry> draining_;  ///< the sinks' thread only
+  // The sinks' thread only:
+  std::vector<Entry> draining_;
+  std::vector<std::shared_ptr<PacketSink>> touched_;  ///< have been offered something
 };
 
 }  // namespace tweend::streams

@@ -15,11 +15,11 @@ constexpr std::size_t kLargeBytes = std::size_t{8} << 20U;
 
 std::span<std::byte> Payload::resize(std::size_t bytes) {
   if (bytes > capacity_) {
-    memory_ = std::make_unique_for_overwrite<std::byte[]>(bytes);
+    memory_ = std::make_unique_for_overwrite<std::byte[]>(kHeadroom + bytes);
     capacity_ = bytes;
   }
   size_ = bytes;
-  return {memory_.get(), size_};
+  return {memory_.get() + kHeadroom, size_};
 }
 
 std::span<float> Payload::resize_floats(std::size_t count) {
@@ -28,8 +28,10 @@ std::span<float> Payload::resize_floats(std::size_t count) {
 }
 
 std::span<const float> Payload::floats() const noexcept {
-  return {reinterpret_cast<const float*>(memory_.get()), size_ / sizeof(float)};
+  return {reinterpret_cast<const float*>(memory_.get() + kHeadroom), size_ / sizeof(float)};
 }
+
+StreamMeter* Packet::meter() const noexcept { return pool_ ? pool_->meter_.get() : nullptr; }
 
 NewPacketPtr PacketPool::take() {
   std::unique_ptr<Packet> packet;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "protocol/packet.hpp"
+#include "server/streams/stream_meter.hpp"
 
 namespace tweend::streams {
 
@@ -24,10 +25,15 @@ class Payload {
   void truncate(std::size_t bytes) noexcept { size_ = bytes < size_ ? bytes : size_; }
 
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
-  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {memory_.get(), size_}; }
+  [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {memory_.get() + kHeadroom, size_}; }
+  /// Room right before the bytes. It is the sinks' thread's: there each of many readers' framing is written in turn, right
+  /// before the kernel is handed both in one piece, and so copies them once and not from two places.
+  [[nodiscard]] std::span<std::byte> headroom() const noexcept { return {memory_.get(), memory_ ? kHeadroom : 0}; }
   [[nodiscard]] std::span<const float> floats() const noexcept;
 
  private:
+  static constexpr std::size_t kHeadroom = 192;  ///< keeps the bytes aligned
+
   std::unique_ptr<std::byte[]> memory_;
   std::size_t capacity_ = 0;
   std::size_t size_ = 0;
@@ -36,13 +42,15 @@ class Payload {
 class PacketPool;
 
 /// One evaluated and encoded packet, shared by all its subscribers. `header.stream` is filled in for each of them.
-/// Immutable once delivered; goes back to its pool with its last reader.
+/// Immutable once delivered, but for the headroom; goes back to its pool with its last reader.
 class Packet {
  public:
   protocol::PacketHeader header;
   std::uint64_t source = 0;       ///< its producer: a stream that changes producers counts on from where it was
   std::uint64_t view_serial = 0;  ///< of the newest published view that it shows; the strand's
   Payload payload;                ///< as it goes on the wire (little-endian machines)
+  /// Counts what becomes of it. Null before it has a pool.
+  [[nodiscard]] StreamMeter* meter() const noexcept;
 
  private:
   friend class PacketPool;
@@ -58,12 +66,17 @@ using NewPacketPtr = boost::intrusive_ptr<Packet>;  ///< while it is in the maki
 /// Packets of one producer, used again and again: once a stream runs, no packet is allocated. Safe from any thread.
 class PacketPool : public std::enable_shared_from_this<PacketPool> {
  public:
+  /// @param meter  what its packets are counted by
+  explicit PacketPool(std::shared_ptr<StreamMeter> meter = std::make_shared<StreamMeter>()) : meter_(std::move(meter)) {}
   /// A packet to be filled and then shared as a PacketPtr; its payload is an earlier one's.
   [[nodiscard]] NewPacketPtr take();
 
  private:
   friend void intrusive_ptr_release(const Packet* packet) noexcept;
+  friend class Packet;
   void give_back(std::unique_ptr<Packet> packet);
+
+  const std::shared_ptr<StreamMeter> meter_;
 
   std::mutex mutex_;
   std::vector<std::unique_ptr<Packet>> free_;

@@ -13,8 +13,10 @@ namespace tweend::streams {
 class PacketSink {
  public:
   virtual ~PacketSink() = default;
-  /// Takes a packet or skips it; never waits.
+  /// Takes a packet or skips it; never waits. What is taken leaves with the next flush().
   virtual void offer(std::uint32_t stream, const PacketPtr& packet) = 0;
+  /// Follows a run of offers, so that all of them leave together.
+  virtual void flush() = 0;
   /// The last word of a stream whose actor or scene is gone.
   virtual void ended(std::uint32_t stream, const std::string& reason) = 0;
 };

@@ -3,12 +3,19 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <cmath>
+#include <cstdlib>
 #include <utility>
 
 #include "server/stage/player.hpp"
 
 namespace tweend::streams {
 namespace {
+
+/// Keys are at most so far apart; those that were asked for at least.
+constexpr double kKeyEveryUs = 1e6;
+constexpr ClockUs kKeySpacingUs = 250'000;
+/// How long something stands still before it is worth a better picture.
+constexpr ClockUs kRefineAfterUs = 500'000;
 
 std::int64_t media_us(double time_s) noexcept { return std::llround(time_s * 1e6); }
 
@@ -19,8 +26,8 @@ Producer::Producer(StreamKey key, std::uint64_t source, Environment environment,
       source_(source),
       environment_(std::move(environment)),
       content_(make_content(*this)),
-      start_us_(steady_now_us()),
-      timer_(environment_.strand) {}
+      timer_(environment_.strand),
+      pool_(std::make_shared<PacketPool>(environment_.meter)) {}
 
 bool Producer::follow(const stage::SceneViewPtr& view) {
   if (view_ && begun_serial_ == view_->serial && content_->shows_the_same(*view)) {
@@ -34,7 +41,8 @@ bool Producer::follow(const stage::SceneViewPtr& view) {
   }
   if (!content_->follow(view)) return false;
   view_ = view;
-  if (!idle()) schedule();
+  if (unhurried_ && changed()) timer_.cancel();  // which schedules anew
+  schedule();
   return true;
 }
 
@@ -53,23 +61,35 @@ bool Producer::serves_only(const PacketSink* sink, std::uint32_t stream) const n
   return only.stream == stream && only.sink.lock().get() == sink;
 }
 
+void Producer::replace(Subscriptions next) {
+  environment_.meter->readers = static_cast<std::int64_t>(next.size());
+  subscriptions_ = std::make_shared<const Subscriptions>(std::move(next));
+}
+
 void Producer::add(Subscription subscription) {
-  auto next = std::make_shared<Subscriptions>(*subscriptions_);
-  next->push_back(subscription);
-  subscriptions_ = std::move(next);
-  if (latest_) {  // whatever has changed since is on its way to all
+  Subscriptions next = *subscriptions_;
+  next.push_back(subscription);
+  replace(std::move(next));
+  if (latest_ && (latest_->header.flags & protocol::kFlagKey) != 0) {  // whatever has changed since is on its way to all
     environment_.mailbox.put({latest_, std::make_shared<const Subscriptions>(Subscriptions{std::move(subscription)})});
+  } else if (!settled_) {
+    key_wanted_ = true;
   }
   schedule();
 }
 
+void Producer::request_key() {
+  key_wanted_ = true;
+  schedule();
+}
+
 void Producer::remove(const PacketSink* sink, std::uint32_t stream) {
-  auto next = std::make_shared<Subscriptions>(*subscriptions_);
-  std::erase_if(*next, [&](const Subscription& s) {
+  Subscriptions next = *subscriptions_;
+  std::erase_if(next, [&](const Subscription& s) {
     const auto held = s.sink.lock();
     return !held || (held.get() == sink && s.stream == stream);
   });
-  subscriptions_ = std::move(next);
+  replace(std::move(next));
 }
 
 void Producer::end(const std::string& reason) {
@@ -84,7 +104,7 @@ void Producer::end(const std::string& reason) {
 
 void Producer::stop() {
   timer_.cancel();
-  subscriptions_ = std::make_shared<const Subscriptions>();
+  replace({});
 }
 
 double Producer::period_us() const noexcept {
@@ -93,28 +113,45 @@ double Producer::period_us() const noexcept {
 }
 
 std::int64_t Producer::reading_before(ClockUs now_us) const noexcept {
-  return static_cast<std::int64_t>(std::floor(static_cast<double>(now_us - start_us_) / period_us()));
+  return static_cast<std::int64_t>(std::floor(static_cast<double>(now_us) / period_us()));
+}
+
+bool Producer::on_lower_rung() const noexcept {
+  const auto* frames = std::get_if<FramesSpec>(&key_.what);
+  return frames != nullptr && frames->rung > 0;
 }
 
 void Producer::schedule() {
   if (scheduled_ || busy_ || idle()) return;
-  const bool changed = begun_serial_ != view_->serial;
-  if (!changed && settled_) return;
   const ClockUs now_us = steady_now_us();
+  unhurried_ = settled_ && !changed();
+  if (!unhurried_) {
+    wait_until(next_reading_us(now_us));
+  } else if (key_wanted_) {
+    wait_until(std::max(now_us, last_key_us_ + kKeySpacingUs));
+  } else if (!refined_) {
+    wait_until(std::max(now_us, last_at_us_ + kRefineAfterUs));
+  }
+}
+
+ClockUs Producer::next_reading_us(ClockUs now_us) {
   const double period_us = this->period_us();
   // The next reading of the grid; a change after a pause, and the very first packet, need no grid to wait for.
   const std::int64_t reading = reading_before(now_us) + 1;
-  const bool at_once = changed && (sequence_ == 0 || static_cast<double>(now_us - last_at_us_) >= period_us);
-  const ClockUs at_us = at_once ? now_us : start_us_ + static_cast<ClockUs>(static_cast<double>(reading) * period_us);
+  const bool at_once = changed() && (sequence_ == 0 || static_cast<double>(now_us - last_at_us_) >= period_us);
   if (sequence_ != 0 && !settled_) {
     tweend::add(environment_.metrics.ticks_missed_total, std::max<std::int64_t>(0, reading - last_reading_ - 1));
   }
   last_reading_ = at_once ? reading - 1 : reading;
+  return at_once ? now_us : static_cast<ClockUs>(static_cast<double>(reading) * period_us);
+}
+
+void Producer::wait_until(ClockUs at_us) {
   scheduled_ = true;
   timer_.expires_at(instant(at_us));
   timer_.async_wait([self = shared_from_this(), at_us](const boost::system::error_code& error) {
     self->scheduled_ = false;
-    if (error) return self->schedule();  // retuned; or stopped, and then idle
+    if (error) return self->schedule();  // something has changed; or stopped, and then idle
     if (!self->idle()) self->tick(at_us);
   });
 }
@@ -126,20 +163,33 @@ void Producer::tick(ClockUs at_us) {
   begin(std::max(at_us, content_->earliest_us()));
 }
 
+bool Producer::needs_key(bool jumped, bool moving, ClockUs at_us) const noexcept {
+  if (!content_->chained() || sequence_ == 0 || jumped || !moving) return true;
+  const ClockUs since_us = at_us - last_key_us_;
+  return static_cast<double>(since_us) + period_us() > kKeyEveryUs || (key_wanted_ && since_us >= kKeySpacingUs);
+}
+
 void Producer::begin(ClockUs at_us) {
+  refined_ = !on_lower_rung() || (settled_ && !changed());
+  content_->refine(refined_);
   const ContentReading reading = content_->read(at_us);
   NewPacketPtr packet = pool_->take();
   packet->source = source_;
   packet->view_serial = view_->serial;
   const std::uint64_t revision = view_->scene->revision;
   const bool jumped = sequence_ != 0 && (reading.continuity != continuity_ || revision != revision_);
+  const bool key = needs_key(jumped, reading.moving, at_us);
   protocol::PacketHeader& header = packet->header;
-  header.flags = static_cast<std::uint8_t>(protocol::kFlagKey | (jumped ? protocol::kFlagDiscontinuity : 0) |
-                                           (reading.moving ? 0 : protocol::kFlagLast));
+  header.flags = static_cast<std::uint8_t>((key ? protocol::kFlagKey : 0) | (jumped ? protocol::kFlagDiscontinuity : 0) |
+                                           (reading.moving || !refined_ ? 0 : protocol::kFlagLast));
   header.sequence = sequence_++;
   header.media_us = media_us(reading.time_s);
   header.server_us = at_us;
   header.revision = static_cast<std::uint32_t>(revision);
+  if (key) {
+    last_key_us_ = at_us;
+    key_wanted_ = false;
+  }
   continuity_ = reading.continuity;
   revision_ = revision;
   settled_ = !reading.moving;
@@ -150,6 +200,13 @@ void Producer::begin(ClockUs at_us) {
   ++in_making_;
   newest_ = packet;
   content_->begin(std::move(packet), at_us + static_cast<ClockUs>(std::min(1e6 / key_.rate, 1e6)));
+}
+
+void Producer::measure(ClockUs at_us) {
+  const ClockUs delay_us = std::max<ClockUs>(0, steady_now_us() - at_us);
+  environment_.metrics.packet_delay_seconds.observe(delay_us);
+  if (last_delay_us_) environment_.metrics.packet_jitter_seconds.observe(std::abs(delay_us - *last_delay_us_));
+  last_delay_us_ = delay_us;
 }
 
 void Producer::ready() {
@@ -168,8 +225,10 @@ void Producer::made(Result<NewPacketPtr> packet) {
   protocol::PacketHeader& header = (*packet)->header;
   header.payload_bytes = static_cast<std::uint32_t>((*packet)->payload.bytes().size());
   delivered_serial_ = (*packet)->view_serial;
+  measure(header.server_us);
   latest_ = std::move(*packet);
   tweend::add(environment_.metrics.packets_produced_total);
+  tweend::add(environment_.meter->produced);
   environment_.mailbox.put({latest_, subscriptions_});
   environment_.progressed();
 }

@@ -277,6 +277,40 @@ TEST(CommandLine, RendersWhatWasAskedFor) {
   EXPECT_EQ(options.quality, 100);
 }
 
+TEST(CommandLine, RatesAreAFilmsOrASequences) {
+  EXPECT_EQ(rendering({"a.obj"}).fps, 24.0);
+  EXPECT_EQ(rendering({"a.obj", "--fps", "12"}).fps, 12.0);
+  EXPECT_EQ(rendering({"a.obj", "--sequence-fps", "12"}).fps, 12.0);
+  for (const std::vector<std::string>& order :
+       {std::vector<std::string>{"a.obj", "--fps", "60", "--mp4", "a.mp4"}, {"a.obj", "--mp4", "a.mp4", "--fps", "60"}}) {
+    EXPECT_EQ(rendering(order).film_fps, 60.0);
+    EXPECT_EQ(rendering(order).fps, 24.0);
+  }
+  const OfflineOptions film = rendering({"a.obj", "--mp4", "a.mp4", "--sequence-fps", "12", "--from", "1", "--to", "2.5"});
+  EXPECT_EQ(film.mp4, "a.mp4");
+  EXPECT_EQ(film.film_fps, 30.0);
+  EXPECT_EQ(film.fps, 12.0);
+  EXPECT_EQ(film.from_s, 1.0);
+  EXPECT_EQ(film.to_s, 2.5);
+}
+
+TEST(CommandLine, RefusesTimesOfAFilmThatAreNone) {
+  for (const char* time : {"-1", "nan", "inf", "a", "", "1,2"}) {
+    mistake({"render", "a.obj", "--mp4", "a.mp4", "--from", time});
+    mistake({"render", "a.obj", "--mp4", "a.mp4", "--to", time});
+  }
+  says(mistake({"render", "a.obj", "--to", "1"}), "--mp4");
+  says(mistake({"render", "a.obj", "--fps", "1", "--sequence-fps", "2"}), "--sequence-fps");
+}
+
+TEST(CommandLine, AFileOfEditsHasItsOwnCameraUnlessAnotherIsAskedFor) {
+  EXPECT_TRUE(rendering({"scene.json"}).is_scene());
+  EXPECT_FALSE(rendering({"scene.json", "a.obj"}).is_scene());
+  EXPECT_FALSE(rendering({"scene.json"}).looks_from);
+  EXPECT_TRUE(rendering({"scene.json", "--orbit", "1,2"}).looks_from);
+  EXPECT_TRUE(rendering({"scene.json", "--eye", "1,2,3"}).looks_from);
+}
+
 TEST(CommandLine, TakesItsAssetsAlsoBehindTheOptions) {
   const OfflineOptions options = rendering({"--at", "0,1", "--size", "64x32", "--eye", "1,2,3", "--target", "-4,5,6",
                                             "--interpolation", "linear", "a.obj", "b.obj"});

@@ -81,7 +81,8 @@ TEST(CommandTable, EditsTakeRevisionAndRetryKey) {
 // Section 8: view describes, samples, streams and listens; admin makes and removes scenes, and exports; the rest is control.
 TEST(CommandTable, RolesAreThoseOfTheProtocolPage) {
   for (const Command& c : command_table()) {
-    const bool admin = c.name == "scene.create" || c.name == "scene.remove" || c.name == "asset.export";
+    const bool admin = c.name == "scene.create" || c.name == "scene.remove" || c.name == "asset.export" ||
+                       c.name == "record.start" || c.name == "record.stop";
     const bool changes = c.is_edit() || c.shape == Shape::Players || c.name == "schedule.cancel";
     EXPECT_EQ(c.role, admin ? Role::Admin : changes ? Role::Control : Role::View) << c.name;
   }

@@ -2,41 +2,35 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <memory>
 #include <string>
+#include <vector>
+
+#include "tests/net/made_packets.hpp"
 
 namespace tweend::net {
 namespace {
 
-using streams::Packet;
-using streams::PacketPool;
 using streams::PacketPtr;
+using test::make_packet;
 
-PacketPtr make_packet(std::uint32_t sequence, std::uint8_t flags = protocol::kFlagKey, std::uint64_t source = 1) {
-  static const auto pool = std::make_shared<PacketPool>();
-  const auto packet = pool->take();
-  const auto numbers = packet->payload.resize_floats(6);
-  for (std::size_t i = 0; i < 6; ++i) numbers[i] = static_cast<float>(i);
-  packet->source = source;
-  packet->header.sequence = sequence;
-  packet->header.flags = flags;
-  packet->header.payload_bytes = 24;
-  return packet;
-}
-
-std::string bytes_of(Outbox& outbox) {
+/// What one gathered write takes, at most so much of it.
+std::string write_some(Outbox& outbox, std::size_t most = std::string::npos) {
+  Gathered gathered;
+  outbox.gather(gathered);
   std::string all;
-  for (const boost::asio::const_buffer& b : outbox.take()) all.append(static_cast<const char*>(b.data()), b.size());
+  for (const iovec& b : gathered.buffers()) all.append(static_cast<const char*>(b.iov_base), b.iov_len);
+  EXPECT_EQ(all.size(), gathered.bytes());
+  all.resize(std::min(all.size(), most));
+  outbox.wrote(gathered, all.size());
   return all;
 }
 
 std::string drain(Outbox& outbox) {
   std::string all;
-  for (std::string some = bytes_of(outbox); !some.empty(); some = bytes_of(outbox)) {
-    all += some;
-    outbox.written();
-  }
+  for (std::string some = write_some(outbox); !some.empty(); some = write_some(outbox)) all += some;
   return all;
 }
 
@@ -64,7 +58,7 @@ TEST_F(OutboxTest, LineTextEndsInANewline) {
 }
 
 TEST_F(OutboxTest, LinePacketsFollowTheLineThatAnnouncesTheirBytes) {
-  line.offer(7, make_packet(3));
+  line.data().offer(7, make_packet(3), 0);
   const std::string wire = drain(line);
   const std::string announcement = R"({"jsonrpc":"2.0","method":"stream.packet","params":{"stream":7,"bytes":64}})"
                                    "\n";
@@ -91,60 +85,32 @@ TEST_F(OutboxTest, WebSocketFramesHaveTheLengthsOfTheStandard) {
 }
 
 TEST_F(OutboxTest, WebSocketPacketsAreOneBinaryMessage) {
-  web.offer(1, make_packet(0));
+  web.data().offer(1, make_packet(0), 0);
   const std::string wire = drain(web);
   EXPECT_EQ(wire.substr(0, 2), std::string("\x82\x40", 2));
   EXPECT_EQ(wire.size(), 2U + 64U);
 }
 
-TEST_F(OutboxTest, ANewerPacketReplacesTheOneThatWaits) {
-  line.offer(1, make_packet(0));
-  line.offer(1, make_packet(1, protocol::kFlagKey | protocol::kFlagDiscontinuity));
-  line.offer(1, make_packet(2));
-  const std::string wire = drain(line);
-  const protocol::PacketHeader header = header_in(wire);
-  EXPECT_EQ(header.sequence, 2U);
-  EXPECT_EQ(header.flags, protocol::kFlagKey | protocol::kFlagDiscontinuity) << "what was skipped has jumped";
-  EXPECT_EQ(wire.find("stream.packet"), wire.rfind("stream.packet")) << "one packet only";
-  EXPECT_EQ(metrics.packets_skipped_total.load(), 2);
-  EXPECT_EQ(metrics.packets_sent_total.load(), 1);
-}
-
-TEST_F(OutboxTest, AReplacedLastPacketTakesItsFlagAlong) {
-  line.offer(1, make_packet(0, protocol::kFlagKey | protocol::kFlagLast));
-  line.offer(1, make_packet(1));
-  EXPECT_EQ(header_in(drain(line)).flags, protocol::kFlagKey) << "only a discontinuity is carried over";
-}
-
 TEST_F(OutboxTest, StreamsDoNotReplaceEachOther) {
-  line.offer(1, make_packet(0));
-  line.offer(2, make_packet(0));
+  line.data().offer(1, make_packet(0), 0);
+  line.data().offer(2, make_packet(0), 0);
   EXPECT_EQ(metrics.packets_skipped_total.load(), 0);
   const std::string wire = drain(line);
   EXPECT_NE(wire.find("\"stream\":1,"), std::string::npos);
   EXPECT_NE(wire.find("\"stream\":2,"), std::string::npos);
 }
 
-TEST_F(OutboxTest, NumbersGoOnWhereAnotherProducerTakesOver) {
-  line.offer(1, make_packet(41, protocol::kFlagKey, 5));
-  EXPECT_EQ(header_in(drain(line)).sequence, 41U);
-  line.offer(1, make_packet(0, protocol::kFlagKey, 6));
-  EXPECT_EQ(header_in(drain(line)).sequence, 42U);
-  line.offer(1, make_packet(3, protocol::kFlagKey, 6));
-  EXPECT_EQ(header_in(drain(line)).sequence, 45U) << "a gap stays a gap";
-}
-
 TEST_F(OutboxTest, AnswersGoBeforePackets) {
-  line.offer(1, make_packet(0));
+  line.data().offer(1, make_packet(0), 0);
   line.push_text("answer");
   EXPECT_EQ(drain(line).substr(0, 7), "answer\n");
 }
 
 TEST_F(OutboxTest, AWordAboutPacketsStaysBehindThem) {
-  line.offer(1, make_packet(0));
+  line.data().offer(1, make_packet(0), 0);
   line.push_after_packets(std::make_shared<const std::string>("ended"));
   line.push_text("answer");
-  line.offer(1, make_packet(1));  // replaces the waiting one, still before the word
+  line.data().offer(1, make_packet(1), 0);  // replaces the waiting one, still before the word
   const std::string wire = drain(line);
   EXPECT_EQ(wire.substr(0, 7), "answer\n");
   EXPECT_EQ(wire.substr(wire.size() - 6), "ended\n");
@@ -157,25 +123,32 @@ TEST_F(OutboxTest, AWordAboutPacketsWaitsForNothingWhereNoneWait) {
 }
 
 TEST_F(OutboxTest, ForgottenStreamsSendNothingMore) {
-  line.offer(1, make_packet(0));
-  line.forget_stream(1);
+  line.data().offer(1, make_packet(0), 0);
+  line.data().forget(1);
   EXPECT_TRUE(line.empty());
   EXPECT_EQ(drain(line), "");
 }
 
 TEST_F(OutboxTest, PayloadsAreSharedAndNeverCopied) {
   const PacketPtr packet = make_packet(0);
-  line.offer(1, packet);
-  const auto buffers = line.take();
-  ASSERT_EQ(buffers.size(), 2U);
-  EXPECT_EQ(buffers[1].data(), packet->payload.bytes().data());
+  line.data().offer(1, packet, 0);
+  Gathered alone;
+  line.gather(alone);
+  ASSERT_EQ(alone.buffers().size(), 1U) << "its framing stands right before it";
+  const auto* const end = static_cast<const std::byte*>(alone.buffers()[0].iov_base) + alone.buffers()[0].iov_len;
+  EXPECT_EQ(end, packet->payload.bytes().data() + packet->payload.bytes().size());
+  line.data().offer(2, packet, 0);
+  Gathered both;
+  line.gather(both);
+  ASSERT_EQ(both.buffers().size(), 4U) << "one packet of two streams has two framings";
+  EXPECT_EQ(both.buffers()[1].iov_base, packet->payload.bytes().data());
+  EXPECT_EQ(both.buffers()[3].iov_base, packet->payload.bytes().data());
 }
 
 TEST_F(OutboxTest, AWriteGathersAtMostThirtyTwoMessages) {
   for (int i = 0; i < 40; ++i) line.push_text("x");
-  EXPECT_EQ(bytes_of(line).size(), 64U);
-  line.written();
-  EXPECT_EQ(bytes_of(line).size(), 16U);
+  EXPECT_EQ(write_some(line).size(), 64U);
+  EXPECT_EQ(write_some(line).size(), 16U);
 }
 
 TEST_F(OutboxTest, UnreadAnswersCongestAndAreRelievedByWriting) {
@@ -183,9 +156,9 @@ TEST_F(OutboxTest, UnreadAnswersCongestAndAreRelievedByWriting) {
   EXPECT_FALSE(line.congested());
   line.push_text("y");
   EXPECT_TRUE(line.congested());
-  static_cast<void>(line.take());
+  static_cast<void>(write_some(line, Outbox::kCongestedBytes));
   EXPECT_TRUE(line.congested()) << "what is being written has not been taken yet";
-  line.written();
+  static_cast<void>(write_some(line, 1));
   EXPECT_FALSE(line.congested());
   EXPECT_FALSE(line.overflowed()) << "answers hold the client back instead";
 }
@@ -221,68 +194,29 @@ std::string packet_bytes(std::uint32_t stream, std::uint32_t sequence) {
 }
 
 TEST_F(OutboxTest, PacketsAreTheSameBytesInBothFramings) {
-  const PacketPtr packet = make_packet(0x01020304);
-  line.offer(4000000000U, packet);
+  const PacketPtr packet = make_packet({.sequence = 0x01020304, .server_us = 0});
+  line.data().offer(4000000000U, packet, 0);
   std::string expected = R"({"jsonrpc":"2.0","method":"stream.packet","params":{"stream":4000000000,"bytes":64}})";
   expected += '\n';
   expected += packet_bytes(4000000000U, 0x01020304);
   EXPECT_EQ(drain(line), expected);
-  web.offer(2, packet);
+  web.data().offer(2, packet, 0);
   expected = "\x82\x40";
   expected += packet_bytes(2, 0x01020304);
   EXPECT_EQ(drain(web), expected);
 }
 
-// Who leaves a producer and comes back to it is given its latest packet: perhaps one that it has had.
-TEST_F(OutboxTest, SendsNoPacketTwice) {
-  const auto pool = std::make_shared<PacketPool>();
-  const auto packet = [&pool](std::uint64_t source, std::uint32_t sequence) {
-    const auto made = pool->take();
-    made->source = source;
-    made->header.sequence = sequence;
-    return made;
-  };
-  web.offer(1, packet(7, 3));
-  EXPECT_FALSE(drain(web).empty());
-  web.offer(1, packet(7, 3));
-  EXPECT_TRUE(drain(web).empty());
-  web.offer(1, packet(7, 4));
-  EXPECT_FALSE(drain(web).empty());
-  web.offer(1, packet(8, 0));
-  EXPECT_FALSE(drain(web).empty()) << "another producer's";
-  web.offer(1, packet(7, 4));
-  EXPECT_FALSE(drain(web).empty()) << "it has seen something else since";
-}
-
-// After months of packets the numbers start again; the stream goes on.
-TEST_F(OutboxTest, GoesOnWhereTheSequenceStartsAgain) {
-  const auto pool = std::make_shared<PacketPool>();
-  for (const std::uint32_t sequence : {0xFFFFFFFEU, 0xFFFFFFFFU, 0U, 1U}) {
-    const auto packet = pool->take();
-    packet->source = 1;
-    packet->header.sequence = sequence;
-    web.offer(1, packet);
-    EXPECT_FALSE(drain(web).empty()) << sequence;
-  }
-}
-
 TEST_F(OutboxTest, LargePacketsHaveTheLengthsOfTheStandardToo) {
-  const auto pool = std::make_shared<PacketPool>();
   // 40 + 4 n bytes: the last of 7 bits, the first and last of 16, the first of 64.
   std::uint32_t sequence = 0;
   for (const std::size_t floats : {20U, 21U, 22U, 16373U, 16374U, 16375U}) {
-    const auto packet = pool->take();
-    packet->header.sequence = sequence++;
-    packet->payload.resize_floats(floats);
-    packet->source = 1;
-    packet->header.payload_bytes = static_cast<std::uint32_t>(4 * floats);
     const std::size_t size = 40 + 4 * floats;
     std::string expected = size < 126 ? "" : size <= 65535 ? "\x7E" : "\x7F";
     if (size < 126) expected += static_cast<char>(size);
     for (int i = size < 126 ? -1 : size <= 65535 ? 1 : 7; i >= 0; --i) {
       expected += static_cast<char>(static_cast<unsigned char>(size >> (8U * static_cast<unsigned>(i))));
     }
-    web.offer(1, packet);
+    web.data().offer(1, make_packet({.sequence = sequence++, .floats = floats}), 0);
     const std::string wire = drain(web);
     EXPECT_EQ(wire[0], '\x82');
     EXPECT_EQ(wire.substr(1, expected.size()), expected) << size;
@@ -293,66 +227,27 @@ TEST_F(OutboxTest, LargePacketsHaveTheLengthsOfTheStandardToo) {
 TEST_F(OutboxTest, ManyReadersShareOnePayload) {
   Outbox other(Framing::WebSocket, metrics);
   const PacketPtr packet = make_packet(0);
-  line.offer(1, packet);
-  other.offer(9, packet);
-  const auto mine = line.take();
-  const auto theirs = other.take();
-  EXPECT_EQ(mine[1].data(), theirs[1].data());
-  EXPECT_EQ(mine[1].data(), packet->payload.bytes().data());
-  EXPECT_NE(std::memcmp(mine[0].data(), theirs[0].data(), 8), 0) << "headers are each reader's own";
-}
-
-TEST_F(OutboxTest, APacketThatIsBeingWrittenIsNotReplaced) {
-  line.offer(1, make_packet(0));
-  const std::string first = bytes_of(line);
-  line.offer(1, make_packet(1));
-  EXPECT_EQ(metrics.packets_skipped_total.load(), 0);
-  line.written();
-  EXPECT_EQ(header_in(first).sequence, 0U);
-  EXPECT_EQ(header_in(drain(line)).sequence, 1U);
-}
-
-TEST_F(OutboxTest, ADiscontinuityIsCarriedOnce) {
-  line.offer(1, make_packet(0, protocol::kFlagKey | protocol::kFlagDiscontinuity));
-  line.offer(1, make_packet(1));
-  EXPECT_EQ(header_in(drain(line)).flags, protocol::kFlagKey | protocol::kFlagDiscontinuity);
-  line.offer(1, make_packet(2));
-  EXPECT_EQ(header_in(drain(line)).flags, protocol::kFlagKey);
-}
-
-TEST_F(OutboxTest, ReplacingKeepsTheTurnOfTheStream) {
-  line.offer(1, make_packet(0));
-  line.offer(2, make_packet(0));
-  line.offer(1, make_packet(5));  // stream 1 has waited longer and still goes first
-  const std::string wire = drain(line);
-  EXPECT_LT(wire.find("\"stream\":1,"), wire.find("\"stream\":2,"));
-}
-
-TEST_F(OutboxTest, EachStreamHasItsOwnNumbers) {
-  line.offer(1, make_packet(7, protocol::kFlagKey, 5));
-  static_cast<void>(drain(line));
-  line.offer(2, make_packet(3, protocol::kFlagKey, 6));
-  EXPECT_EQ(header_in(drain(line)).sequence, 3U);
-  line.forget_stream(1);
-  line.offer(1, make_packet(100, protocol::kFlagKey, 6));
-  EXPECT_EQ(header_in(drain(line)).sequence, 100U) << "a forgotten stream has no history";
-}
-
-TEST_F(OutboxTest, NumbersGoOnOverSkippedProducersAndTheEndOfTheRange) {
-  line.offer(1, make_packet(0xFFFFFFFFU, protocol::kFlagKey, 5));
-  EXPECT_EQ(header_in(drain(line)).sequence, 0xFFFFFFFFU);
-  line.offer(1, make_packet(9, protocol::kFlagKey, 6));  // replaced before it is sent
-  line.offer(1, make_packet(20, protocol::kFlagKey, 7));
-  EXPECT_EQ(header_in(drain(line)).sequence, 0U);
-  line.offer(1, make_packet(22, protocol::kFlagKey, 7));
-  EXPECT_EQ(header_in(drain(line)).sequence, 2U);
+  line.data().offer(1, packet, 0);
+  other.data().offer(9, packet, 0);
+  // One after the other, as the thread that writes does it.
+  Gathered mine, theirs;
+  line.gather(mine);
+  const std::string first(static_cast<const char*>(mine.buffers()[0].iov_base), mine.buffers()[0].iov_len);
+  other.gather(theirs);
+  const std::string second(static_cast<const char*>(theirs.buffers()[0].iov_base), theirs.buffers()[0].iov_len);
+  const auto end_of = [](Gathered& g) { return static_cast<const char*>(g.buffers()[0].iov_base) + g.buffers()[0].iov_len; };
+  EXPECT_EQ(end_of(mine), end_of(theirs));
+  EXPECT_NE(first.substr(0, 8), second.substr(0, 8)) << "headers are each reader's own";
 }
 
 TEST_F(OutboxTest, AWriteTakesPacketsInThePlaceThatAnswersLeave) {
   for (int i = 0; i < 30; ++i) line.push_text("x");
-  for (std::uint32_t stream = 1; stream <= 10; ++stream) line.offer(stream, make_packet(0));
-  EXPECT_EQ(line.take().size(), 30U * 2U + 2U * 2U);  // text and its end; framing and payload
-  line.written();
+  for (std::uint32_t stream = 1; stream <= 10; ++stream) line.data().offer(stream, make_packet(0), 0);
+  Gathered gathered;
+  line.gather(gathered);
+  EXPECT_EQ(gathered.messages(), 32U);
+  EXPECT_EQ(gathered.buffers().size(), 30U * 2U + 2U * 2U);  // text and its end; framing and payload
+  static_cast<void>(write_some(line));
   line.push_text("late");
   const std::string wire = drain(line);
   EXPECT_EQ(wire.substr(0, 5), "late\n");
@@ -363,20 +258,92 @@ TEST_F(OutboxTest, AWriteTakesPacketsInThePlaceThatAnswersLeave) {
 
 TEST_F(OutboxTest, IsNotEmptyWhileSomethingIsBeingWritten) {
   line.push_text("x");
-  static_cast<void>(line.take());
+  static_cast<void>(write_some(line, 1));
   EXPECT_FALSE(line.empty());
-  line.written();
+  EXPECT_EQ(write_some(line), "\n");
   EXPECT_TRUE(line.empty());
 }
 
 TEST_F(OutboxTest, PacketsCongestNothing) {
-  const auto pool = std::make_shared<PacketPool>();
-  const auto packet = pool->take();
-  packet->header.payload_bytes =
-      static_cast<std::uint32_t>(packet->payload.resize_floats(Outbox::kOverflowBytes / 2).size_bytes());
-  line.offer(1, packet);
+  line.data().offer(1, make_packet({.floats = Outbox::kOverflowBytes / 2}), 0);
   EXPECT_FALSE(line.congested());
   EXPECT_FALSE(line.overflowed());
+}
+
+/// Cuts a connection's bytes into messages by the documents alone: a line, a line with the bytes that it announces, a frame.
+std::vector<std::string> messages_in(Framing framing, const std::string& wire) {
+  std::vector<std::string> messages;
+  for (std::size_t at = 0; at < wire.size();) {
+    std::size_t end = 0;
+    if (framing == Framing::Line) {
+      end = wire.find('\n', at) + 1;
+      const std::string key = "\"bytes\":";
+      const std::size_t bytes = wire.substr(at, end - at).find(key);
+      if (bytes != std::string::npos) end += std::stoul(wire.substr(at + bytes + key.size()));
+    } else {
+      const auto size = static_cast<unsigned char>(wire.at(at + 1));
+      const auto byte = [&](std::size_t i) { return std::size_t{static_cast<unsigned char>(wire.at(at + i))}; };
+      end = at + (size < 126 ? 2U + size : 4U + byte(2) * 256 + byte(3));
+    }
+    if (end <= at || end > wire.size()) {
+      ADD_FAILURE() << "a message that is none at " << at;
+      break;
+    }
+    messages.push_back(wire.substr(at, end - at));
+    at = end;
+  }
+  return messages;
+}
+
+// The socket takes so many bytes and then more; something urgent comes in between.
+TEST_F(OutboxTest, WritesGoOnExactlyWhereTheyStoppedAndNothingFallsInsideAPacket) {
+  for (const Framing framing : {Framing::Line, Framing::WebSocket}) {
+    const auto fill = [](Outbox& outbox) {
+      outbox.push_text("first");
+      outbox.push_shared(std::make_shared<const std::string>("second"));
+      outbox.data().offer(1, make_packet({.server_us = 0}), 0);
+      outbox.data().offer(2, make_packet({.server_us = 0, .floats = 30}), 0);
+      outbox.push_after_packets(std::make_shared<const std::string>("after"));
+    };
+    Outbox whole(framing, metrics);
+    fill(whole);
+    const std::string expected = drain(whole);
+    auto urgent_first = messages_in(framing, expected);
+    ASSERT_EQ(urgent_first.size(), 5U);
+    for (std::size_t split = 1; split < expected.size(); ++split) {
+      Outbox outbox(framing, metrics);
+      fill(outbox);
+      std::string wire = write_some(outbox, split);
+      outbox.push_text("urgent");
+      for (std::string more = write_some(outbox, 3); !more.empty(); more = write_some(outbox, 3)) wire += more;
+      auto messages = messages_in(framing, wire);
+      const auto urgent = std::find_if(messages.begin(), messages.end(),
+                                       [](const std::string& m) { return m.find("urgent") != std::string::npos; });
+      ASSERT_NE(urgent, messages.end()) << split;
+      // Behind what had begun, and behind answers that came before it; never behind a packet that had not.
+      std::size_t begun = 0;
+      for (std::size_t bytes = 0; bytes < split; ++begun) bytes += urgent_first[begun].size();
+      ASSERT_EQ(static_cast<std::size_t>(urgent - messages.begin()), std::max<std::size_t>(begun, 2)) << split;
+      messages.erase(urgent);
+      ASSERT_EQ(messages, urgent_first) << split;
+      ASSERT_TRUE(outbox.empty());
+    }
+  }
+}
+
+TEST_F(OutboxTest, WhatIsDroppedLeavesWhatHasBegunAndTheAnswers) {
+  for (std::uint32_t stream = 1; stream <= 3; ++stream) line.data().offer(stream, make_packet(0), 0);
+  line.push_after_packets(std::make_shared<const std::string>(std::string(Outbox::kOverflowBytes + 1, 'x')));
+  EXPECT_TRUE(line.overflowed());
+  std::string wire = write_some(line, 10);
+  line.push_text("answer");
+  line.drop_data();
+  EXPECT_FALSE(line.overflowed());
+  wire += drain(line);
+  const auto messages = messages_in(Framing::Line, wire);
+  ASSERT_EQ(messages.size(), 2U);
+  EXPECT_EQ(header_in(messages[0]).stream, 1U);
+  EXPECT_EQ(messages[1], "answer\n");
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ class Owner final : public ContentOwner {
   Owner(Streaming& s, const StreamKey& key, std::size_t pictures)
       : s_(s),
         left_(pictures),
-        content_(
-            std::make_shared<FrameContent>(std::get<FramesSpec>(key.what), s.stage->strand(), s.workers, s.renderer, *this)) {}
+        content_(std::make_shared<FrameContent>(std::get<FramesSpec>(key.what), key.rate, s.stage->strand(), s.workers, desk_,
+                                                *this)) {}
 
   /// @return once all pictures are made, the owner's diary: "b" begun, "r" ready for another, "m" made, "e" an error
   std::string run() {
@@ -74,6 +74,7 @@ class Owner final : public ContentOwner {
   }
 
   Streaming& s_;
+  PictureDesk desk_{s_.stage->strand(), s_.workers, s_.renderer};
   std::size_t left_;
   std::size_t in_making_ = 0;
   std::uint32_t next_ = 0;

@@ -17,13 +17,19 @@ namespace {
 
 using test::allocations;
 
-/// Notes what it is given, without taking memory for it.
+/// Notes what it is given and when it is flushed, without taking memory for it.
 class NotingSink final : public PacketSink {
  public:
   NotingSink() { sequences.reserve(100'000); }
   void offer(std::uint32_t, const PacketPtr& packet) override { sequences.push_back(packet->header.sequence); }
+  void flush() override {
+    ++flushes;
+    offered_at_flush = sequences.size();
+  }
   void ended(std::uint32_t, const std::string&) override {}
   std::vector<std::uint32_t> sequences;
+  std::size_t flushes = 0;
+  std::size_t offered_at_flush = 0;
 };
 
 struct Letters {
@@ -82,6 +88,30 @@ TEST(Mailbox, TakesMoreWhileItIsEmptied) {
   ASSERT_EQ(posted.size(), 2U);
   posted[1]();
   EXPECT_EQ(letters.sink->sequences, (std::vector<std::uint32_t>{1}));
+}
+
+TEST(Mailbox, FlushesEachSinkOnceAfterAllThatItIsOffered) {
+  Task waiting;
+  Mailbox mailbox([&](Task task) { waiting = std::move(task); });
+  const Letters letters;
+  const auto other = std::make_shared<NotingSink>();
+  const auto both = std::make_shared<const Subscriptions>(Subscriptions{{other, 1}, {letters.sink, 2}});
+  for (std::uint32_t i = 0; i < 3; ++i) mailbox.put({letters.packet(i), both});
+  waiting();  // one list: sink by sink
+  EXPECT_EQ(letters.sink->flushes, 1U);
+  EXPECT_EQ(letters.sink->offered_at_flush, 3U);
+  EXPECT_EQ(other->flushes, 1U);
+  EXPECT_EQ(other->offered_at_flush, 3U);
+  mailbox.put({letters.packet(3), letters.to});
+  mailbox.put({letters.packet(4), both});
+  mailbox.call([] {});
+  mailbox.put({letters.packet(5), both});
+  mailbox.put({letters.packet(6), letters.to});
+  waiting();  // several: a sink of more than one is still flushed once
+  EXPECT_EQ(letters.sink->flushes, 2U);
+  EXPECT_EQ(letters.sink->offered_at_flush, 7U);
+  EXPECT_EQ(other->flushes, 2U);
+  EXPECT_EQ(other->offered_at_flush, 5U);
 }
 
 TEST(Mailbox, PassesOverSinksThatAreGone) {

@@ -90,7 +90,7 @@ model::CameraRequest from_above(float height) {
 }
 
 streams::StreamKey frames_of(std::string scene, streams::FrameEncoding encoding, double rate) {
-  return {std::move(scene), rate, streams::FramesSpec{"", encoding, kSmall, 95, from_above()}};
+  return {std::move(scene), rate, streams::FramesSpec{"", encoding, kSmall, 95, from_above(), 0, 0}};
 }
 
 streams::StreamKey seen_by(streams::StreamKey key, model::CameraRequest camera) {

@@ -9,7 +9,7 @@ namespace tweend::streams {
 namespace {
 
 const StreamKey kVertices{"main", 30.0, VerticesSpec{"square"}};
-const StreamKey kFrames{"main", 30.0, FramesSpec{"", FrameEncoding::Jpeg, {64, 48}, 80, {}}};
+const StreamKey kFrames{"main", 30.0, FramesSpec{"", FrameEncoding::Jpeg, {64, 48}, 80, {}, 0, 0}};
 
 template <class Change>
 StreamKey changed(Change change) {
@@ -43,6 +43,14 @@ TEST(SameButView, IsNotWhatDiffersInMoreThanRateAndCamera) {
     EXPECT_FALSE(same_but_view(other, kFrames));
   }
   EXPECT_FALSE(same_but_view(kVertices, StreamKey{"main", 30.0, VerticesSpec{"other"}}));
+}
+
+TEST(SameButView, IsNotH264OfAnotherRateWhoseBitsArePicturesBudgets) {
+  StreamKey slow = changed([](StreamKey&, FramesSpec& f) { f.encoding = FrameEncoding::H264; });
+  StreamKey fast = slow;
+  EXPECT_TRUE(same_but_view(slow, fast));
+  fast.rate = 2 * slow.rate;
+  EXPECT_FALSE(same_but_view(slow, fast));
 }
 
 TEST(SameButView, IsWhatDiffersInRateAndCameraOnly) {

@@ -39,6 +39,7 @@ class RecordingSink final : public streams::PacketSink {
     }
     changed_.notify_all();
   }
+  void flush() override {}
   void ended(std::uint32_t stream, const std::string& reason) override {
     {
       const std::lock_guard lock(mutex_);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "server/app/offline_scene.hpp"
+
+namespace tweend::app {
+
+/// What can be said of a film before anything is read.
+/// @return InvalidParams for a name that does not end with .mp4, odd sides, or times the wrong way round; Unavailable in a
+/// build without H.264
+[[nodiscard]] Status check_film(const OfflineOptions& options);
+
+/// Draws each actor's clip from the first time to before the last one, by default all of the first actor's: exactly
+/// round((to - from) × fps) pictures, at least one. The next picture is drawn while one is encoded.
+/// @return Unavailable where the file can't be written; nothing of it is left then
+[[nodiscard]] Status render_film(const OfflineOptions& options, const OfflineScene& scene);
+
+}  // namespace tweend::app

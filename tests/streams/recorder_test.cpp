@@ -1,0 +1,276 @@
+#include "server/streams/recorder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "server/streams/still.hpp"
+#include "tests/streams/picturing.hpp"
+
+namespace tweend::streams {
+namespace {
+
+using test::Decoded;
+using test::kSmall;
+
+/// What came of a recording's pictures, and a gate that they wait at.
+struct Kept {
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::vector<Decoded> pictures;
+  bool open = true;
+  bool finished = false, gone = false;
+  std::thread::id gone_on;
+  std::size_t fails_at = SIZE_MAX;
+
+  void wait_for(std::size_t count) {
+    std::unique_lock lock(mutex);
+    ASSERT_TRUE(changed.wait_for(lock, test::kPatience, [&] { return pictures.size() >= count; }));
+  }
+  void let_through() {
+    const std::lock_guard lock(mutex);
+    open = true;
+    changed.notify_all();
+  }
+};
+
+class KeptSink final : public PictureSink {
+ public:
+  explicit KeptSink(std::shared_ptr<Kept> kept) : kept_(std::move(kept)) {}
+  ~KeptSink() override {
+    const std::lock_guard lock(kept_->mutex);
+    kept_->gone = true;
+    kept_->gone_on = std::this_thread::get_id();
+    kept_->changed.notify_all();
+  }
+  Status add(const render::ImageView& image) override {
+    std::unique_lock lock(kept_->mutex);
+    kept_->changed.wait(lock, [this] { return kept_->open; });
+    if (kept_->pictures.size() == kept_->fails_at) return fail(ErrorCode::Unavailable, "no space left");
+    kept_->pictures.push_back(test::decoded(image));
+    kept_->changed.notify_all();
+    return {};
+  }
+  Result<std::uint64_t> finish() override {
+    const std::lock_guard lock(kept_->mutex);
+    kept_->finished = true;
+    return 7;
+  }
+
+ private:
+  const std::shared_ptr<Kept> kept_;
+};
+
+class Recorders : public testing::Test {
+ protected:
+  Recorders() : stage({test::scene_of("main", {test::square_actor("square", {{.keys = 40}})})}) {
+    limits.recordings = 3;
+    stage.start([this](const std::string& scene, const stage::SceneViewPtr& view) { recorder.follow(scene, view); });
+  }
+  ~Recorders() override {
+    if (!finished_) recorder.finish_all();
+    renderer.stop();
+    workers.stop();
+    stage.stop();
+  }
+  void SetUp() override {
+    if (!renderer.device()) GTEST_SKIP() << renderer.device().error().message;
+  }
+
+  Result<RecordingStarted> try_start(const std::shared_ptr<Kept>& kept, const std::string& name, const std::string& scene,
+                                     double fps = 50.0) {
+    std::promise<Result<RecordingStarted>> promise;
+    stage->post([&] {
+      RecordingRequest request{scene, name, fps, kSmall, test::from_above(), std::make_unique<KeptSink>(kept)};
+      promise.set_value(recorder.start(std::move(request)));
+    });
+    return promise.get_future().get();
+  }
+  RecordingStarted start(const std::shared_ptr<Kept>& kept, const std::string& name = "a", double fps = 50.0) {
+    const auto started = try_start(kept, name, "main", fps);
+    EXPECT_TRUE(started) << started.error().message;
+    return *started;
+  }
+  std::future<Result<Recorded>> stop_later(RecordingId id) {
+    auto promise = std::make_shared<std::promise<Result<Recorded>>>();
+    auto future = promise->get_future();
+    stage->post([this, id, promise] {
+      recorder.stop(id, [promise](Result<Recorded> recorded) { promise->set_value(std::move(recorded)); });
+    });
+    return future;
+  }
+  Result<Recorded> stop(RecordingId id) { return stop_later(id).get(); }
+  void finish_all() {
+    recorder.finish_all();
+    finished_ = true;
+  }
+  Decoded picture_at(const stage::SceneViewPtr& view, ClockUs at_us) {
+    StillRequest request;
+    request.view = view;
+    request.now_us = at_us;
+    request.size = kSmall;
+    request.camera = test::from_above();
+    std::promise<Result<DrawnStill>> promise;
+    draw_still(std::move(request), workers, renderer,
+               [&promise](Result<DrawnStill> drawn) { promise.set_value(std::move(drawn)); });
+    const auto drawn = promise.get_future().get();
+    EXPECT_TRUE(drawn);
+    return drawn ? test::decoded(drawn->pixels->view()) : Decoded{};
+  }
+  void play() {
+    stage.act([](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.play(range, now_us); });
+  }
+
+  Limits limits;
+  test::RunningStage stage;
+  WorkerPool workers{3};
+  render::RenderThread renderer;
+  Recorder recorder{*stage, workers, renderer, limits};
+
+ private:
+  bool finished_ = false;
+};
+
+TEST_F(Recorders, RefuseAnUnknownSceneATakenNameAndOneTooMany) {
+  const auto kept = std::make_shared<Kept>();
+  const auto nowhere = try_start(kept, "a", "nowhere");
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().code, ErrorCode::NotFound);
+  start(kept, "a");
+  const auto taken = try_start(kept, "a", "main");
+  ASSERT_FALSE(taken);
+  EXPECT_EQ(taken.error().code, ErrorCode::Conflict);
+  start(kept, "b");
+  start(kept, "c");
+  const auto more = try_start(kept, "d", "main");
+  ASSERT_FALSE(more);
+  EXPECT_EQ(more.error().code, ErrorCode::Limit);
+}
+
+TEST_F(Recorders, LetTheSinkOfARefusedOneGoOffTheStrand) {
+  const auto kept = std::make_shared<Kept>(), refused = std::make_shared<Kept>();
+  start(kept, "a");
+  EXPECT_FALSE(try_start(refused, "a", "main"));
+  std::promise<std::thread::id> strand;
+  stage->post([&] { strand.set_value(std::this_thread::get_id()); });
+  std::unique_lock lock(refused->mutex);
+  ASSERT_TRUE(refused->changed.wait_for(lock, test::kPatience, [&] { return refused->gone; }));
+  EXPECT_NE(refused->gone_on, strand.get_future().get());
+  EXPECT_FALSE(refused->finished);
+}
+
+TEST_F(Recorders, TellBeforeThereIsASinkWhetherTheyWouldStart) {
+  const auto may_start = [this](const std::string& name, const std::string& scene) {
+    std::promise<Status> promise;
+    stage->post([&] { promise.set_value(recorder.may_start({scene, name, 50.0, kSmall, {}, nullptr})); });
+    return promise.get_future().get();
+  };
+  EXPECT_TRUE(may_start("a", "main"));
+  EXPECT_EQ(may_start("a", "nowhere").error().code, ErrorCode::NotFound);
+  const auto kept = std::make_shared<Kept>();
+  start(kept, "a");
+  EXPECT_EQ(may_start("a", "main").error().code, ErrorCode::Conflict);
+  start(kept, "b");
+  start(kept, "c");
+  EXPECT_EQ(may_start("d", "main").error().code, ErrorCode::Limit);
+}
+
+TEST_F(Recorders, StopOnlyWhatWasStartedAndOnce) {
+  EXPECT_EQ(stop(1).error().code, ErrorCode::NotFound);
+  const auto kept = std::make_shared<Kept>();
+  const auto started = start(kept);
+  kept->wait_for(1);
+  const auto recorded = stop(started.id);
+  ASSERT_TRUE(recorded) << recorded.error().message;
+  EXPECT_EQ(recorded->name, "a");
+  EXPECT_EQ(recorded->bytes, 7U);
+  EXPECT_EQ(recorded->pictures, kept->pictures.size());
+  EXPECT_TRUE(kept->finished && kept->gone);
+  EXPECT_EQ(stop(started.id).error().code, ErrorCode::NotFound);
+}
+
+TEST_F(Recorders, MissNothingHoweverSlowTheEncoderIs) {
+  const auto slow = std::make_shared<Kept>(), pace = std::make_shared<Kept>();
+  slow->open = false;
+  const stage::SceneViewPtr before = stage.view();
+  const auto started = start(slow, "slow"), paced = start(pace, "pace");
+  pace->wait_for(5);
+  play();
+  const stage::SceneViewPtr after = stage.view();
+  const ClockUs played_us = (*after->players)[0].anchor_us;
+  pace->wait_for(30);
+  auto stopped = stop_later(started.id);
+  ASSERT_TRUE(stop(paced.id));
+  EXPECT_NE(stopped.wait_for(std::chrono::seconds(0)), std::future_status::ready) << "its pictures are still to be made";
+  slow->let_through();
+  const auto recorded = stopped.get();
+  ASSERT_TRUE(recorded);
+  ASSERT_EQ(recorded->pictures, slow->pictures.size());
+  EXPECT_GE(slow->pictures.size(), 30U);
+  std::size_t moved = 0;
+  for (std::size_t k = 0; k < slow->pictures.size(); ++k) {
+    const ClockUs at_us = started.start_us + static_cast<ClockUs>(k) * 20'000;
+    const Decoded want = picture_at(at_us < played_us ? before : after, at_us);
+    EXPECT_EQ(test::mean_difference(slow->pictures[k], want), 0.0) << k;
+    if (k > 0 && test::mean_difference(slow->pictures[k], slow->pictures[k - 1]) > 0.0) ++moved;
+  }
+  EXPECT_GT(moved, 10U) << "there was something to be seen";
+}
+
+TEST_F(Recorders, EndWhereTheSceneIsRemovedAndKeepWhatThereIs) {
+  ASSERT_TRUE(stage.wait(stage.create_later({"two", "scene.create", {}, {}})));
+  const auto kept = std::make_shared<Kept>();
+  const auto started = try_start(kept, "a", "two");
+  ASSERT_TRUE(started);
+  kept->wait_for(2);
+  ASSERT_TRUE(stage.wait(stage.remove_later({"two", "scene.remove", {}, {}})));
+  const auto recorded = stop(started->id);
+  ASSERT_TRUE(recorded) << recorded.error().message;
+  EXPECT_EQ(recorded->pictures, kept->pictures.size());
+  EXPECT_TRUE(kept->finished);
+}
+
+TEST_F(Recorders, EndAfterSoManyPicturesAndLeaveTheirPlaceToOthers) {
+  limits.recorded_pictures = 4;
+  const auto kept = std::make_shared<Kept>();
+  const auto started = start(kept);
+  kept->wait_for(4);
+  const auto recorded = stop(started.id);
+  ASSERT_TRUE(recorded);
+  EXPECT_EQ(recorded->pictures, 4U);
+}
+
+TEST_F(Recorders, TellWhatWentWrongWhenTheyAreStopped) {
+  const auto kept = std::make_shared<Kept>();
+  kept->fails_at = 2;
+  const auto started = start(kept);
+  kept->wait_for(2);
+  const auto recorded = stop(started.id);
+  ASSERT_FALSE(recorded);
+  EXPECT_EQ(recorded.error().message, "no space left");
+  EXPECT_TRUE(kept->gone);
+  EXPECT_FALSE(kept->finished);
+}
+
+TEST_F(Recorders, MakeAFileOfWhatThereIsWhenTheServerStops) {
+  const auto kept = std::make_shared<Kept>();
+  const auto started = start(kept);
+  kept->wait_for(3);
+  finish_all();
+  EXPECT_TRUE(kept->finished && kept->gone);
+  EXPECT_GE(kept->pictures.size(), 3U);
+  const auto recorded = stop(started.id);
+  ASSERT_TRUE(recorded);
+  EXPECT_EQ(recorded->pictures, kept->pictures.size());
+  EXPECT_EQ(try_start(kept, "b", "main").error().code, ErrorCode::Unavailable);
+}
+
+}  // namespace
+}  // namespace tweend::streams
