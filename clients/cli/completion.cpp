@@ -26,7 +26,6 @@ _tweenctl_candidates() {
     METHOD) "${ask[@]}" methods --names ;;
     NAME=VALUE) "${ask[@]}" methods "$first" --names | sed 's/$/=/' ;;
     FILE) compgen -f -- "$cur" ;;
-    DIR) compgen -d -- "$cur" ;;
     *) printf '%s\n' "${shape//|/$'\n'}" | grep '^[a-z]' ;;
   esac 2>/dev/null
 }
@@ -65,12 +64,12 @@ _tweenctl() {
   fi
   [[ $shape ]] && candidates+=$'\n'$(_tweenctl_candidates "$shape" "$program" "${arguments[0]:-}" "${globals[@]}")
 
-  [[ $shape == @(FILE|DIR) ]] && compopt -o filenames 2>/dev/null  # bash then quotes them and adds the slash of a folder
+  [[ $shape == FILE ]] && compopt -o filenames 2>/dev/null  # bash then quotes them and adds the slash of a folder
   COMPREPLY=()
   while IFS= read -r word; do
     [[ $word && $word == "$cur"* && ($word != -* || $cur == -*) ]] || continue
     [[ $word == *= ]] && compopt -o nospace 2>/dev/null
-    [[ $word == *= || $word == -* || $shape == @(FILE|DIR) ]] || printf -v word '%q' "$word"
+    [[ $word == *= || $word == -* || $shape == FILE ]] || printf -v word '%q' "$word"
     COMPREPLY+=("$word")
   done <<<"$candidates"
 }

@@ -25,13 +25,16 @@ Command& with_camera(Command& command, const std::string& into) {
   return command;
 }
 
-Command& with_picture(Command& command) {
-  command.option("--width", "width", count("PIXELS"), "(default 1280)")
+Command& with_size(Command& command) {
+  return command.option("--width", "width", count("PIXELS"), "(default 1280)")
       .option("--height", "height", count("PIXELS"), "(default 720)")
       .option("--size", own("size"), size(), "both")
       .exclusive({"--size", "--width"})
-      .exclusive({"--size", "--height"})
-      .option("--quality", "quality", count("1-100"), "of a JPEG (default 80)");
+      .exclusive({"--size", "--height"});
+}
+
+Command& with_picture(Command& command) {
+  with_size(command).option("--quality", "quality", count("1-100"), "of a JPEG (default 80)");
   return with_camera(command, "camera/");
 }
 

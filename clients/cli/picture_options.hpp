@@ -12,6 +12,9 @@ namespace tweend::cli {
 /// @param into  the parameter whose members they are, `camera/`; empty: they are parameters themselves
 Command& with_camera(Command& command, const std::string& into);
 
+/// --width, --height or --size.
+Command& with_size(Command& command);
+
 /// --width, --height or --size, --quality, and the viewer's own camera as the parameter `camera`.
 Command& with_picture(Command& command);
 

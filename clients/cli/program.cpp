@@ -50,6 +50,7 @@ void add_every_family(CommandSet& commands) {
   add_sample_commands(commands);
   add_frame_commands(commands);
   add_export_commands(commands);
+  add_record_commands(commands);
   add_event_commands(commands);
   add_watch_commands(commands);
   add_raw_commands(commands);

@@ -13,7 +13,7 @@ namespace tweend::cli {
 /// What may be written for an argument, and the JSON that it means.
 struct ValueKind {
   /// For the help and the completion: `a|b` lists the words, ACTOR, ASSET, CLIP, SCENE and METHOD name things of the server,
-  /// FILE and DIR are completed as such, anything else is only shown.
+  /// FILE is completed as one or as a folder, anything else is only shown.
   std::string shape;
   std::function<Json(const std::string& text)> read;  ///< throws Usage, saying what was expected
 };

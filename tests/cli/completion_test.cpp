@@ -58,6 +58,8 @@ TEST(Completion, OffersTheWordsOfAnOption) {
   EXPECT_THAT(complete("tweenctl play --loop=p"), ElementsAre("ping_pong"));
   EXPECT_THAT(complete("tweenctl keyframe update 3 --easing "), ElementsAre("none"));
   EXPECT_THAT(complete("tweenctl export a --format "), ElementsAre("glb", "obj_sequence"));
+  EXPECT_THAT(complete("tweenctl watch vertices --encoding "), ElementsAre("f32", "q16", "meshopt"));
+  EXPECT_THAT(complete("tweenctl watch frames --delivery "), ElementsAre("latest", "every"));
   EXPECT_THAT(complete("tweenctl seek "), IsEmpty());
 }
 
@@ -79,17 +81,16 @@ TEST(Completion, AsksTheServerForMethodsAndTheirParameters) {
 
 TEST(Completion, KnowsThePictures) {
   EXPECT_THAT(complete("tweenctl watch "), UnorderedElementsAre("vertices", "pose", "frames"));
-  EXPECT_THAT(complete("tweenctl watch frames --encoding "), ElementsAre("jpeg", "png"));
+  EXPECT_THAT(complete("tweenctl watch frames --encoding "), ElementsAre("jpeg", "png", "h264", "rgba"));
   EXPECT_THAT(complete("tweenctl watch frames --o"), UnorderedElementsAre("--out", "--orbit"));
   EXPECT_THAT(complete("tweenctl frame a.png --el"), ElementsAre("--elevation"));
 }
 
-TEST(Completion, OffersFolders) {
+TEST(Completion, OffersFilesAndFolders) {
+  EXPECT_THAT(complete("tweenctl apply /proc/self/cmd"), ElementsAre("/proc/self/cmdline"));
   EXPECT_THAT(complete("tweenctl watch frames -o /proc/self/fdi"), ElementsAre("/proc/self/fdinfo"));
-  EXPECT_THAT(complete("tweenctl watch frames --out=/proc/self/cmd"), IsEmpty()) << "a file";
+  EXPECT_THAT(complete("tweenctl watch frames --out=/proc/self/cmd"), ElementsAre("/proc/self/cmdline"));
 }
-
-TEST(Completion, OffersFiles) { EXPECT_THAT(complete("tweenctl apply /proc/self/cmd"), ElementsAre("/proc/self/cmdline")); }
 
 }  // namespace
 }  // namespace tweend::cli

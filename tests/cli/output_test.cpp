@@ -43,6 +43,11 @@ TEST(Output, EditsAreASentenceWithTheRevision) {
   EXPECT_EQ(
       output({"export", "a.glb"}, "asset.export", R"({"name":"a.glb","format":"glb"})", R"({"name":"a.glb","bytes":1200})"),
       "a.glb saved: 1200 bytes\n");
+  EXPECT_EQ(output({"record", "start", "a.mp4"}, "record.start", R"({"name":"a.mp4","format":"mp4"})",
+                   R"({"record":3,"start_us":17})"),
+            "recording 3 to a.mp4: `record stop 3` ends it\n");
+  EXPECT_EQ(output({"record", "stop", "3"}, "record.stop", R"({"record":3})", R"({"name":"a.mp4","frames":90,"bytes":1200})"),
+            "a.mp4 saved: 90 pictures, 1200 bytes\n");
   EXPECT_EQ(output({"remove", "box"}, "actor.remove", R"({"actor":"box"})", R"({"revision":5})"),
             "actor box removed (revision 5)\n");
   EXPECT_EQ(output({"add", "box", "--asset", "a.obj"}, "actor.add", R"({"actor":"box","asset":"a.obj"})",

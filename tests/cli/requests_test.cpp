@@ -89,6 +89,18 @@ INSTANTIATE_TEST_SUITE_P(
              {}}));
 
 INSTANTIATE_TEST_SUITE_P(
+    Recordings, Requests,
+    testing::Values(Case{{"record", "start", "a.mp4", "--size", "640x360", "--fps", "29.97"},
+                         "record.start",
+                         R"({"name":"a.mp4","format":"mp4","width":640,"height":360,"fps":29.97})",
+                         {}},
+                    Case{{"--scene", "two", "record", "start", "walk", "--eye", "0,0,5", "--width", "33"},
+                         "record.start",
+                         R"({"scene":"two","name":"walk","format":"png_sequence","width":33,"camera":{"eye":[0,0,5]}})",
+                         {}},
+                    Case{{"record", "stop", "3"}, "record.stop", R"({"record":3})", {}}));
+
+INSTANTIATE_TEST_SUITE_P(
     Keyframes, Requests,
     testing::Values(Case{{"keyframe", "add", "--capture"}, "keyframe.add", R"({"capture":true})", {}},
                     Case{{"keyframe", "add", "--pose", R"({"hip":{"rotation":[0,0,0,1]}})", "--sparse", "--interpolation",

@@ -38,7 +38,79 @@ TEST(WatchFrames, AsksForWhatTheOptionsSay) {
                            {"--scene", "two", "watch", "frames", "--count", "1", "--rate", "10", "--size", "640x360",
                             "--encoding", "png", "--quality", "70", "--eye", "0,1,9", "--up", "0,1,0"});
   EXPECT_EQ(run.code, ExitCode::Done) << run.err;
-  EXPECT_NE(run.out.find("png 640 x 360, 67 B\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("png 1 x 1 of 640 x 360, 67 B\n"), std::string::npos) << run.out;
+}
+
+/// The frame header of a JPEG of so many pixels behind a segment that says nothing of them; more is not read.
+std::string jpeg_of(char width, char height) {
+  using namespace std::string_literals;
+  return "\xFF\xD8\xFF\xE0\x00\x04--\xFF\xC0\x00\x11\x08\x00"s + height + '\0' + width + "..........";
+}
+
+TEST(WatchFrames, SaysHowFarTheServerHasGoneDownForUs) {
+  const auto packets = frame_packet(1, 0, jpeg_of(96, 54)) + frame_packet(2, 1, png());
+  const auto run = run_cli(frame_stream({{"adaptive", true}}, packets), {"watch", "frames", "--count", "2", "--adaptive"});
+  EXPECT_NE(run.out.find("jpeg 96 x 54 of 640 x 360, 27 B\n"), std::string::npos) << run.out;
+  EXPECT_NE(run.out.find("png 1 x 1 of 640 x 360, "), std::string::npos) << run.out;
+  const auto json = run_cli(frame_stream({{"adaptive", false}, {"delivery", "every"}}, frame_packet(1, 0, jpeg_of(96, 54))),
+                            {"--json", "watch", "frames", "--count", "1", "--no-adaptive", "--delivery", "every"});
+  EXPECT_EQ(Json::parse(json.out).at("width"), 96);
+  EXPECT_EQ(Json::parse(json.out).at("height"), 54);
+}
+
+TEST(WatchFrames, APictureCutShortHasNoSize) {
+  const std::string whole = jpeg_of(96, 54);
+  for (std::size_t bytes = 3; bytes < 17; ++bytes) {
+    const auto run =
+        run_cli(frame_stream(kNothing, frame_packet(1, 0, whole.substr(0, bytes))), {"watch", "frames", "--count", "1"});
+    EXPECT_NE(run.out.find("jpeg 640 x 360, "), std::string::npos) << run.out;
+  }
+}
+
+TEST(WatchFrames, StoresVideoInOneFile) {
+  const Folder folder;
+  const Json params{{"encoding", "h264"}, {"bitrate", 500'000}};
+  const auto packets = frame_packet(1, 2, "unit one,") + frame_packet(2, 2, "unit two");
+  const std::string out = folder.path("o.h264");
+  std::ofstream(out) << "an earlier and longer file than this one";
+  const auto run = run_cli(frame_stream(params, packets),
+                           {"watch", "frames", "--encoding", "h264", "--bitrate", "500000", "-o", out, "--count", "2"});
+  EXPECT_EQ(run.code, ExitCode::Done) << run.err;
+  EXPECT_EQ(folder.read("o.h264"), "unit one,unit two");
+  EXPECT_EQ(run.out.rfind(out + ": 2 frames, ", 0), 0U) << run.out;
+}
+
+TEST(WatchFrames, WritesVideoAloneToStandardOutput) {
+  const auto run = run_cli(frame_stream({{"encoding", "h264"}}, frame_packet(1, 2, "unit")),
+                           {"watch", "frames", "--encoding", "h264", "-o", "-", "--count", "1"});
+  EXPECT_EQ(run.code, ExitCode::Done);
+  EXPECT_EQ(run.out, "unit");
+  EXPECT_EQ(run.err.rfind("-: 1 frame, ", 0), 0U) << run.err;
+}
+
+TEST(WatchFrames, VideoThatCantBeWrittenLosesNothing) {
+  const Folder folder;
+  const auto run = run_cli(frame_stream({{"encoding", "h264"}}, frame_packet(1, 2, "unit")),
+                           {"watch", "frames", "--encoding", "h264", "-o", folder.path("none/o.h264")});
+  EXPECT_EQ(run.code, ExitCode::Refused);
+  EXPECT_EQ(run.err, "tweenctl: can't write " + folder.path("none/o.h264") +
+                         ": expected a place for 4 B, found: No such file or directory\n");
+  std::ofstream(folder.path("kept")) << "kept";
+  const auto end = test::event("stream.ended", {{"stream", 4}, {"reason", "gone"}});
+  const auto ended =
+      run_cli(frame_stream({{"encoding", "h264"}}, end), {"watch", "frames", "--encoding", "h264", "-o", folder.path("kept")});
+  EXPECT_EQ(ended.code, ExitCode::Refused);
+  EXPECT_EQ(folder.read("kept"), "kept");
+}
+
+TEST(WatchFrames, StandardOutputIsForOneThing) {
+  const auto pictures = test::run_alone({"watch", "frames", "-o", "-"});
+  EXPECT_EQ(pictures.code, ExitCode::Usage);
+  EXPECT_EQ(pictures.err,
+            "tweenctl: --out: expected a folder with jpeg, found -; h264 and rgba can be written to standard output\n");
+  const auto lines = test::run_alone({"--json", "watch", "frames", "--encoding", "h264", "-o", "-"});
+  EXPECT_EQ(lines.code, ExitCode::Usage);
+  EXPECT_EQ(lines.err, "tweenctl: --out: expected a file with --json, whose lines go to standard output, found -\n");
 }
 
 TEST(WatchFrames, StoresEachUnderItsNumber) {
