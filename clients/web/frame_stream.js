@@ -1,11 +1,13 @@
 /**
- * The stream of pictures: brings what the server sends to what is wanted (size, camera, whether anybody looks), one request
- * at a time, so that a fast hand never gets ahead of a slow connection.
+ * The stream of pictures: brings what the server sends to what is wanted (encoding, size, camera, whether anybody looks), one
+ * request at a time, so that a fast hand never gets ahead of a slow connection.
  *
  * @import {Connection} from "./connection.js"
+ * @import {FrameEncoding} from "./encoding_choice.js"
  * @import {StreamCamera} from "./view_camera.js"
  * @import {Packet} from "./packet.js"
  */
+import { RpcError } from "./connection.js";
 import { decode_packet } from "./packet.js";
 import { Listeners } from "./listeners.js";
 
@@ -16,9 +18,10 @@ const kMostPixels = 1280 * 720;
 const kLeastSide = 16;
 
 /** @typedef {{width: number, height: number}} Size */
+/** @typedef {{encoding: FrameEncoding, codec: string} & Size} FrameLayout  what the pictures of a stream are */
 
 /**
- * The size to ask for: that of the screen's pixels, even, within the cap, in the same shape.
+ * The size to ask for: that of the screen's pixels, even (as H.264 needs it), within the cap, in the same shape.
  * @param {number} css_width
  * @param {number} css_height
  * @param {number} pixel_ratio
@@ -38,18 +41,24 @@ export class FrameStream {
   #report;
   /** @type {Size | null} */
   #size = null;
+  /** @type {FrameEncoding | null} */
+  #encoding = null;
   /** @type {StreamCamera | null} */
   #camera = null;
   #watched = true;
-  /** @type {{stream: number, size: Size, camera: StreamCamera | null} | null} what the server has */
+  /** @type {{stream: number, encoding: FrameEncoding, size: Size, camera: StreamCamera | null} | null} what the server has */
   #open = null;
   #busy = false;
   /** Counts what was wanted; what failed is not tried again until something else is. */
   #wish = 0;
   #failed_wish = -1;
 
+  /** @type {Listeners<FrameLayout>} told before the first packet of each stream */
+  opened = new Listeners();
   /** @type {Listeners<Packet>} */
   packets = new Listeners();
+  /** @type {Listeners<RpcError>} H.264 was asked for and refused */
+  refusals = new Listeners();
 
   /**
    * @param {Connection} connection
@@ -76,6 +85,21 @@ export class FrameStream {
   set_size(size) {
     this.#size = size;
     this.#wanted();
+  }
+
+  /** @param {FrameEncoding} encoding  nothing is asked for before it is known */
+  set_encoding(encoding) {
+    this.#encoding = encoding;
+    this.#wanted();
+  }
+
+  /** Asks for a packet that decodes on its own. */
+  request_key() {
+    const open = this.#open;
+    if (!open) return;
+    this.#connection.call("stream.request_key", { stream: open.stream }).catch((error) => {
+      if (this.#open === open) this.#report(error); // else the stream has gone meanwhile
+    });
   }
 
   /** @param {StreamCamera | null} camera  null: the scene's */
@@ -120,28 +144,51 @@ export class FrameStream {
   /** @returns {(() => Promise<void>) | null} */
   #next_step() {
     if (this.#failed_wish === this.#wish || this.#connection.state.phase !== "open") return null;
-    const [open, size] = [this.#open, this.#size];
-    if (!this.#watched || !size) return open && (() => this.#close(open.stream));
-    if (!open || open.size.width !== size.width || open.size.height !== size.height) return () => this.#replace(size);
+    const [open, size, encoding] = [this.#open, this.#size, this.#encoding];
+    if (!this.#watched || !size || !encoding) return open && (() => this.#close(open.stream));
+    const same = open?.encoding === encoding && open.size.width === size.width && open.size.height === size.height;
+    if (!open || !same) return () => this.#replace(size, encoding);
     if (open.camera !== this.#camera) return () => this.#update(open);
     return null;
   }
 
-  /** @param {Size} size */
-  async #replace(size) {
+  /**
+   * @param {Size} size
+   * @param {FrameEncoding} encoding
+   */
+  async #replace(size, encoding) {
     const camera = this.#camera;
-    const { stream } = await this.#connection.call("stream.open", {
-      kind: "frames",
-      scene: this.#scene,
-      encoding: "jpeg",
-      rate: kRate,
-      quality: kQuality,
-      ...size,
-      ...(camera ? { camera } : {}),
-    });
+    const opened = await this.#ask(size, encoding, camera);
+    if (!opened) return;
+    const { stream, layout } = opened;
     const before = this.#open;
-    this.#open = { stream, size, camera };
+    this.#open = { stream, encoding, size, camera };
+    this.opened.tell({ encoding, codec: layout.codec, ...size });
     if (before) await this.#connection.call("stream.close", { stream: before.stream }); // no gap: the new one is there
+  }
+
+  /**
+   * @param {Size} size
+   * @param {FrameEncoding} encoding
+   * @param {StreamCamera | null} camera
+   * @returns {Promise<{stream: number, layout: {codec: string}} | null>} null: refused, and another encoding is wanted since
+   */
+  async #ask(size, encoding, camera) {
+    try {
+      return await this.#connection.call("stream.open", {
+        kind: "frames",
+        scene: this.#scene,
+        encoding,
+        rate: kRate,
+        ...(encoding === "jpeg" ? { quality: kQuality } : {}),
+        ...size,
+        ...(camera ? { camera } : {}),
+      });
+    } catch (error) {
+      if (encoding === "h264" && error instanceof RpcError) this.refusals.tell(error);
+      if (encoding === this.#encoding) throw error;
+      return null;
+    }
   }
 
   /** @param {{stream: number, camera: StreamCamera | null}} open */

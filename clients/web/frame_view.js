@@ -1,29 +1,49 @@
 /**
- * The canvas: decodes pictures and draws the newest, once a frame of the screen. What is not drawn before something newer
+ * The canvas: has pictures decoded and draws the newest, once a frame of the screen. What is not drawn before something newer
  * has come is never drawn.
  *
  * @import {Packet} from "./packet.js"
- * @import {Size} from "./frame_stream.js"
+ * @import {FrameLayout, Size} from "./frame_stream.js"
  */
 import { Listeners } from "./listeners.js";
-import { image_type } from "./packet.js";
 import { stream_size } from "./frame_stream.js";
+import { StillDecoder } from "./still_decoder.js";
+import { UnitDecoder } from "./video_decoder.js";
 
 /** While a window is being resized, the old picture is stretched; a new size is asked for when the hand rests. */
 const kResizeRest_ms = 200;
+
+/**
+ * @typedef {object} PictureSink  what a decoder tells
+ * @property {(image: ImageBitmap | VideoFrame, packet: Packet) => void} show  takes the image over
+ * @property {() => void} need_key                  it can't go on before a packet that decodes on its own
+ * @property {(error: unknown) => void} fail        it can't go on at all
+ * @property {(error: unknown) => void} report      of one picture
+ */
+
+/** @typedef {{packet: Packet, layout: FrameLayout, size: Size}} Drawn  what was asked for, and the size that the picture came in */
+
+/** @param {ImageBitmap | VideoFrame} image @returns {Size} */
+function size_of(image) {
+  if ("displayWidth" in image) return { width: image.displayWidth, height: image.displayHeight };
+  return { width: image.width, height: image.height };
+}
 
 export class FrameView {
   #canvas;
   #context;
   #report;
-  /** @type {Packet | null} came while another was being decoded */
-  #waiting = null;
-  #decoding = false;
-  /** @type {{bitmap: ImageBitmap, packet: Packet} | null} */
+  /** @type {StillDecoder | UnitDecoder | null} of the stream that was opened last */
+  #decoder = null;
+  /** @type {{image: ImageBitmap | VideoFrame, packet: Packet, layout: FrameLayout} | null} waits for the screen */
   #decoded = null;
 
-  /** @type {Listeners<Packet>} told when its picture is on the canvas */
+  /** @type {Listeners<Drawn>} told when a picture is on the canvas */
   drawn = new Listeners();
+  /** @type {Listeners<void>} the decoder needs a packet that decodes on its own */
+  keys_needed = new Listeners();
+  /** @type {Listeners<unknown>} the encoding can't be decoded here after all */
+  failures = new Listeners();
   /** @type {Listeners<Size>} the size that pictures should have */
   sizes = new Listeners();
 
@@ -62,51 +82,55 @@ export class FrameView {
     say();
   }
 
-  /** @param {Packet} packet */
-  push(packet) {
-    this.#waiting = packet;
-    if (!this.#decoding) void this.#decode();
+  /**
+   * Another stream begins; the last picture stays until its first.
+   * @param {FrameLayout} layout
+   */
+  begin(layout) {
+    this.#decoder?.close();
+    this.#decoder = null;
+    /** @type {PictureSink} */
+    const sink = {
+      show: (image, packet) => this.#show(image, packet, layout),
+      need_key: () => this.keys_needed.tell(),
+      fail: (error) => this.failures.tell(error),
+      report: this.#report,
+    };
+    this.#decoder = layout.encoding === "h264" ? new UnitDecoder(layout.codec, sink) : new StillDecoder(sink);
   }
 
-  async #decode() {
-    this.#decoding = true;
-    while (this.#waiting) {
-      const packet = this.#waiting;
-      this.#waiting = null;
-      try {
-        const bitmap = await createImageBitmap(new Blob([packet.payload], { type: image_type(packet) }));
-        this.#show(bitmap, packet);
-      } catch (error) {
-        this.#report(new Error(`the picture can't be decoded: ${error instanceof Error ? error.message : error}`));
-      }
-    }
-    this.#decoding = false;
+  /** @param {Packet} packet */
+  push(packet) {
+    this.#decoder?.push(packet);
   }
 
   /**
-   * @param {ImageBitmap} bitmap
+   * @param {ImageBitmap | VideoFrame} image
    * @param {Packet} packet
+   * @param {FrameLayout} layout
    */
-  #show(bitmap, packet) {
+  #show(image, packet, layout) {
     if (this.#decoded) {
-      this.#decoded.bitmap.close(); // it came too late for the screen
+      this.#decoded.image.close(); // it came too late for the screen
     } else {
       requestAnimationFrame(() => this.#draw());
     }
-    this.#decoded = { bitmap, packet };
+    this.#decoded = { image, packet, layout };
   }
 
+  /** Pictures that the server has made smaller for a slow connection fill the canvas all the same. */
   #draw() {
     const decoded = this.#decoded;
     if (!decoded) return;
     this.#decoded = null;
-    const { bitmap, packet } = decoded;
-    const { width, height } = bitmap;
+    const { image, packet, layout } = decoded;
+    const { width, height } = layout;
     if (this.#canvas.width !== width || this.#canvas.height !== height) {
       Object.assign(this.#canvas, { width, height }); // also clears it, so only where it has to
     }
-    this.#context.drawImage(bitmap, 0, 0);
-    bitmap.close();
-    this.drawn.tell(packet);
+    const size = size_of(image);
+    this.#context.drawImage(image, 0, 0, width, height);
+    image.close();
+    this.drawn.tell({ packet, layout, size });
   }
 }

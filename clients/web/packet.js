@@ -4,6 +4,7 @@
 
 export const kHeaderBytes = 40;
 export const kKindFrame = 3;
+export const kEncodingH264 = 2;
 export const kFlagKey = 1;
 export const kFlagDiscontinuity = 2;
 export const kFlagLast = 4;

@@ -6,7 +6,7 @@ import { markers_on_line } from "../../clients/web/controls/marker_ticks.js";
 import { error_text } from "../../clients/web/controls/messages.js";
 import { interpolation_choice } from "../../clients/web/controls/playback_options.js";
 import { belongs_to } from "../../clients/web/controls/shortcuts.js";
-import { connection_words } from "../../clients/web/controls/status.js";
+import { bytes_text, connection_words, meter_words } from "../../clients/web/controls/status.js";
 import { FrameMeter } from "../../clients/web/frame_meter.js";
 import { ViewCamera } from "../../clients/web/view_camera.js";
 
@@ -72,22 +72,45 @@ test("markers beyond the end of the line are not on it", () => {
 
 describe("the meter", () => {
   test("has seen nothing at first", () => {
-    const meter = new FrameMeter();
-    assert.deepEqual(meter.read(0), { per_second: 0, age_ms: null });
-    assert.equal(meter.ever, false);
+    assert.deepEqual(new FrameMeter().read(0), { per_second: 0, age_ms: null, bytes_per_second: 0 });
   });
   test("counts the last second, and tells the middle age", () => {
     const meter = new FrameMeter();
     [0, 500, 600, 700].forEach((at, i) => meter.add(at, [1, 90, 5, 7][i]));
-    assert.deepEqual(meter.read(900), { per_second: 4, age_ms: 7 });
-    assert.deepEqual(meter.read(1100), { per_second: 3, age_ms: 7 });
-    assert.deepEqual(meter.read(9999), { per_second: 0, age_ms: null });
-    assert.equal(meter.ever, true);
+    const read = (at) => Object.values(meter.read(at)).slice(0, 2);
+    assert.deepEqual(read(900), [4, 7]);
+    assert.deepEqual(read(1100), [3, 7]);
+    assert.deepEqual(read(9999), [0, null]);
+  });
+  test("counts what came in the last second, drawn or not", () => {
+    const meter = new FrameMeter();
+    [0, 500, 600].forEach((at) => meter.receive(at, 1000));
+    assert.equal(meter.read(900).bytes_per_second, 3000);
+    assert.equal(meter.read(1100).bytes_per_second, 2000);
+    assert.equal(meter.read(1100).per_second, 0);
   });
   test("does without ages that nobody knows", () => {
     const meter = new FrameMeter();
     meter.add(0, null);
-    assert.deepEqual(meter.read(1), { per_second: 1, age_ms: null });
+    assert.deepEqual(meter.read(1), { per_second: 1, age_ms: null, bytes_per_second: 0 });
+  });
+
+  const picture = (encoding, width = 1280, height = 720) => ({
+    layout: { encoding, codec: "", width: 1280, height: 720 },
+    size: { width, height },
+  });
+  const reading = { per_second: 30, age_ms: 4.23, bytes_per_second: 210_400 };
+  test("says what comes", () => {
+    assert.equal(meter_words(reading, picture("h264")), "30 fps · 4.2 ms old · 1280 × 720 · H.264 · 210 kB/s");
+    assert.equal(meter_words({ ...reading, age_ms: null }, picture("jpeg")), "30 fps · 1280 × 720 · JPEG · 210 kB/s");
+    assert.equal(meter_words({ ...reading, per_second: 0 }, picture("jpeg")), "still · 1280 × 720 · JPEG");
+    assert.equal(meter_words(reading, null), "no picture");
+  });
+  test("says so where a picture came smaller than asked for", () => {
+    assert.match(meter_words(reading, picture("jpeg", 640, 360)), / · 640 × 360 of 1280 × 720 · /);
+  });
+  test("counts bytes as people do", () => {
+    assert.deepEqual([0, 1499, 999_499, 999_500, 2_340_000].map(bytes_text), ["0 kB", "1 kB", "999 kB", "1.0 MB", "2.3 MB"]);
   });
 });
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, describe, test } from "node:test";
-import { ConnectionLost } from "../../clients/web/connection.js";
+import { ConnectionLost, RpcError } from "../../clients/web/connection.js";
 import { FrameStream, stream_size } from "../../clients/web/frame_stream.js";
 import { Listeners } from "../../clients/web/listeners.js";
 import { settled } from "./support/fake_socket.mjs";
@@ -47,16 +47,19 @@ let connection, stream, errors;
 const kSize = { width: 640, height: 360 };
 const camera = (azimuth) => ({ orbit: { azimuth, elevation: 0, distance: 5, target: [0, 0, 0] } });
 
+const opened = (stream, codec = "jpeg") => ({ stream, layout: { codec } });
+
 async function open() {
   stream.set_size(kSize);
   connection.become("open");
-  await connection.answer({ stream: 1 });
+  await connection.answer(opened(1));
 }
 
 beforeEach(() => {
   connection = new FakeConnection();
   errors = [];
   stream = new FrameStream(connection, "main", (error) => errors.push(error));
+  stream.set_encoding("jpeg");
 });
 
 describe("a stream", () => {
@@ -67,7 +70,7 @@ describe("a stream", () => {
     assert.deepEqual(connection.calls[0].params, {
       kind: "frames", scene: "main", encoding: "jpeg", rate: 30, quality: 80, width: 640, height: 360,
     });
-    await connection.answer({ stream: 1 });
+    await connection.answer(opened(1));
     assert.deepEqual(connection.asked, []);
   });
 
@@ -75,7 +78,7 @@ describe("a stream", () => {
     await open();
     stream.set_size({ width: 320, height: 180 });
     assert.equal(connection.calls[0].params.width, 320);
-    await connection.answer({ stream: 2 });
+    await connection.answer(opened(2));
     assert.deepEqual([connection.calls[0].method, connection.calls[0].params], ["stream.close", { stream: 1 }]);
   });
 
@@ -138,6 +141,61 @@ describe("a stream", () => {
     connection.events.tell({ method: "stream.ended", params: { stream: 1, reason: "scene removed" } });
     assert.match(errors[0].message, /scene removed/);
     assert.deepEqual(connection.asked, []);
+  });
+});
+
+describe("an encoding", () => {
+  const refusal = new RpcError("stream.open", { code: -32006, message: "no encoder" });
+
+  test("has to be known before anything is asked for", () => {
+    stream = new FrameStream(connection, "main", assert.fail);
+    stream.set_size(kSize);
+    connection.become("open");
+    assert.deepEqual(connection.asked, []);
+    stream.set_encoding("h264");
+    assert.deepEqual(connection.calls[0].params, {
+      kind: "frames", scene: "main", encoding: "h264", rate: 30, width: 640, height: 360,
+    });
+  });
+
+  test("is told with its codec before the first packet", async () => {
+    const told = [];
+    stream.opened.add((layout) => told.push(layout));
+    stream.set_encoding("h264");
+    stream.set_size(kSize);
+    connection.become("open");
+    await connection.answer(opened(1, "avc1.42c01e"));
+    assert.deepEqual(told, [{ encoding: "h264", codec: "avc1.42c01e", width: 640, height: 360 }]);
+  });
+
+  test("is changed without a gap", async () => {
+    await open();
+    stream.set_encoding("h264");
+    assert.deepEqual(connection.calls.map((c) => [c.method, c.params.encoding]), [["stream.open", "h264"]]);
+    await connection.answer(opened(2, "avc1.42c01e"));
+    assert.deepEqual(connection.calls.map((c) => [c.method, c.params]), [["stream.close", { stream: 1 }]]);
+  });
+
+  test("that is refused is told, and reported unless another is wanted then", async () => {
+    stream.set_encoding("h264");
+    stream.set_size(kSize);
+    connection.become("open");
+    connection.calls.shift().reject(refusal);
+    await settled();
+    assert.deepEqual(errors, [refusal]);
+    stream.refusals.add(() => stream.set_encoding("jpeg"));
+    stream.set_size({ width: 320, height: 180 });
+    connection.calls.shift().reject(refusal);
+    await settled();
+    assert.deepEqual(connection.calls.map((c) => c.params.encoding), ["jpeg"]);
+    assert.equal(errors.length, 1);
+  });
+
+  test("keys are asked for of the open stream", async () => {
+    stream.request_key();
+    await open();
+    stream.request_key();
+    assert.deepEqual(connection.calls.map((c) => [c.method, c.params]), [["stream.request_key", { stream: 1 }]]);
   });
 });
 

@@ -4,6 +4,7 @@
  * @import {Connection, ConnectionState} from "../connection.js"
  * @import {StageStore} from "../stage_state.js"
  * @import {FrameMeter} from "../frame_meter.js"
+ * @import {Drawn} from "../frame_view.js"
  */
 import { element, set_text } from "../dom.js";
 import { lead_player } from "../stage_state.js";
@@ -67,18 +68,52 @@ export function show_connection(connection, store) {
 }
 
 /**
- * @param {FrameMeter} meter
- * @param {HTMLCanvasElement} canvas
+ * @param {number} bytes
+ * @returns {string} as people read it
  */
-export function show_meter(meter, canvas) {
+export function bytes_text(bytes) {
+  return bytes < 999_500 ? `${Math.round(bytes / 1000)} kB` : `${(bytes / 1e6).toFixed(1)} MB`;
+}
+
+const kBetween = " · ";
+const kEncodingNames = { h264: "H.264", jpeg: "JPEG" };
+
+/**
+ * @param {ReturnType<FrameMeter["read"]>} reading
+ * @param {Pick<Drawn, "layout" | "size"> | null} picture  the last one; null: none yet
+ * @returns {string}
+ */
+export function meter_words({ per_second, age_ms, bytes_per_second }, picture) {
+  if (!picture) return "no picture";
+  const { layout, size } = picture;
+  const smaller = size.width !== layout.width || size.height !== layout.height;
+  const found = `${size.width} × ${size.height}${smaller ? ` of ${layout.width} × ${layout.height}` : ""}`;
+  const what = [found, kEncodingNames[layout.encoding]];
+  if (per_second === 0) return ["still", ...what].join(kBetween); // nothing changes, so nothing is sent
+  const age = age_ms === null ? [] : [`${age_ms.toFixed(age_ms < 10 ? 1 : 0)} ms old`];
+  return [`${per_second} fps`, ...age, ...what, `${bytes_text(bytes_per_second)}/s`].join(kBetween);
+}
+
+/**
+ * Sets a text of parts; where it needs a second line, it breaks between them only.
+ * @param {HTMLElement} node
+ * @param {string} text
+ */
+function set_parts(node, text) {
+  if (node.textContent === text) return;
+  const parts = text.split(kBetween).map((part) => {
+    const span = document.createElement("span");
+    span.textContent = part;
+    return [span, kBetween];
+  });
+  node.replaceChildren(...parts.flat().slice(0, -1));
+}
+
+/**
+ * @param {FrameMeter} meter
+ * @param {() => Drawn | null} picture
+ */
+export function show_meter(meter, picture) {
   const node = element("meter", HTMLElement);
-  setInterval(() => {
-    const { per_second, age_ms } = meter.read(performance.now());
-    if (per_second === 0) {
-      set_text(node, meter.ever ? "still" : "no picture"); // nothing changes, so nothing is sent
-      return;
-    }
-    const age = age_ms === null ? "" : ` · ${age_ms.toFixed(age_ms < 10 ? 1 : 0)} ms old`;
-    set_text(node, `${per_second} fps${age} · ${canvas.width} × ${canvas.height}`);
-  }, kReadEvery_ms);
+  setInterval(() => set_parts(node, meter_words(meter.read(performance.now()), picture())), kReadEvery_ms);
 }

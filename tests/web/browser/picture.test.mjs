@@ -1,12 +1,15 @@
 /** What is seen, at both sizes, and the page's own camera. */
 import assert from "node:assert/strict";
 import { after, before, describe, test } from "node:test";
+import { fileURLToPath } from "node:url";
 import { TweendPage, difference, kDesk, kPhone, launch, until } from "../support/browser.mjs";
 import { ServerProcess } from "../support/server_process.mjs";
 
 /** Pictures of one state differ by less, those of different ones by more. */
 const kSame = 0.5;
 const kOther = 2;
+/** A server whose pictures have half the sides asked for. */
+const kHalfSize = fileURLToPath(new URL("../support/fake_server.mjs", import.meta.url));
 
 let browser, server;
 before(async () => ([browser, server] = [await launch(), await ServerProcess.start()]));
@@ -19,12 +22,25 @@ for (const [name, options] of Object.entries({ desk: kDesk, phone: kPhone })) {
   test(`at ${name} size there is a picture, and nothing sticks out`, async () => {
     const page = await TweendPage.open(browser, server.url, options);
     await page.ready();
-    await page.says("#meter", /^\d+ fps · [\d.]+ ms old · \d+ × \d+$/);
+    await page.says("#meter", /^\d+ fps · [\d.]+ ms old · \d+ × \d+( of \d+ × \d+)? · (H\.264|JPEG) · [\d.]+ [kM]B\/s$/);
     const wide = await page.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
     assert.ok(wide <= 0, `expected nothing beyond the right edge, found ${wide} px`);
     await page.close();
   });
 }
+
+test("a picture that came smaller than asked for fills its place, and the meter says so", async () => {
+  const small = await ServerProcess.start({ program: kHalfSize });
+  const page = await TweendPage.open(browser, small.url, kPhone);
+  await page.ready();
+  await page.says("#meter", /· 375 × 375 of 750 × 750 · JPEG · /);
+  const { width, height } = await page.page.locator("#picture").evaluate((c) => ({ width: c.width, height: c.height }));
+  assert.deepEqual([width, height], [750, 750]);
+  const wide = await page.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  assert.ok(wide <= 0, `expected nothing beyond the right edge, found ${wide} px`);
+  await page.close();
+  await small.kill();
+});
 
 test("the picture takes the shape of its place", async () => {
   const page = await TweendPage.open(browser, server.url);

@@ -13,11 +13,10 @@ export class ServerProcess {
   url = "";
 
   /**
-   * @param {{listen?: string}} [options]
+   * @param {{listen?: string, program?: string}} [options]
    * @returns {Promise<ServerProcess>} once it serves
    */
-  static async start({ listen = "127.0.0.1:0" } = {}) {
-    const program = process.env.TWEEND;
+  static async start({ listen = "127.0.0.1:0", program = process.env.TWEEND } = {}) {
     if (!program) throw new Error("expected the server's program in the environment as TWEEND, e.g. build/release/bin/tweend");
     const server = new ServerProcess();
     const options = ["--listen", listen, "--no-auth", "--assets", kAssets, "--load", "barb", "--play"];
