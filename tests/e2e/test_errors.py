@@ -14,11 +14,12 @@ GOOD = {
     "playback.stop": {}, "playback.seek": {"time": 1}, "playback.step": {"keyframes": 1}, "playback.set": {"speed": 2},
     "playback.get": {}, "camera.set": {"eye": [1, 2, 3]}, "light.set": {"ambient": 1}, "vertices.sample": {},
     "frame.render": {"width": 8, "height": 8},
-    "stream.open": {"kind": "vertices"}, "stream.update": {"stream": 1, "rate": 5}, "stream.close": {"stream": 1},
+    "stream.open": {"kind": "vertices"}, "stream.update": {"stream": 1, "rate": 5}, "stream.close": {"stream": 1}, "stream.request_key": {"stream": 1},
     "events.subscribe": {}, "events.unsubscribe": {}, "pose.set": {"actor": "rig", "pose": {}}, "pose.clear": {}, "pose.sample": {},
     "playback.queue": {"clips": [{"clip": "second"}]}, "marker.add": {"time": 1, "name": "here"}, "marker.remove": {"marker": 1},
     "marker.list": {}, "layer.set": {"layer": "new", "clip": "second"}, "layer.remove": {"layer": "top"}, "schedule.list": {},
     "schedule.cancel": {"scheduled": 1}, "asset.export": {"format": "glb", "name": "out.glb"},
+    "record.start": {"name": "out.mp4", "width": 16, "height": 16}, "record.stop": {"record": 1},
 }
 # None of these is good for a parameter of another type.
 SAMPLES = {"string": "¿", "number": 1.5, "boolean": True, "array": [[]], "object": {"¿": 1}}

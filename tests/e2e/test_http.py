@@ -1,6 +1,7 @@
 """HTTP (section 7), and who may ask (section 8)."""
 import json
 import random
+import re
 import socket
 
 import harness
@@ -49,8 +50,12 @@ class Pages(harness.TestCase):
                 name, value = text.rsplit(" ", 1)
                 values[name] = float(value)
         for name in values:
-            self.assertRegex(name, "^tweend_[a-z_]+$")
-            self.assertEqual(described[name]["TYPE"], "counter" if name.endswith("_total") else "gauge")
+            self.assertRegex(name, r'^tweend_[a-z_]+({([a-z]+="[^"]*",?)+})?$')
+            family = re.sub(r"{.*", "", name)
+            kind = "counter" if family.endswith("_total") else "gauge"
+            if family not in described:
+                family, kind = re.sub("_(bucket|sum|count)$", "", family), "histogram"
+            self.assertEqual(described[family]["TYPE"], kind)
         self.assertEqual((values["tweend_scenes"], values["tweend_actors"]), (1, 1))
         self.assertEqual(values["tweend_edits_total"], 4)
         self.assertEqual(set(self.c.call("server.stats")), set(values))

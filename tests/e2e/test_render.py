@@ -1,14 +1,18 @@
 """`tweend render` and `tweend doctor`, the programs without a port; and a server on a machine where nothing draws."""
+import json
 import os
 import re
 import struct
 import subprocess
 import unittest
 import zlib
+from fractions import Fraction
 
 import harness
 from client import HttpClient, LineClient
+from films import Film, distance
 from harness import TWEEND, lifted, wait_until
+from pictures import Picture
 
 NO_DEVICE = {"__EGL_VENDOR_LIBRARY_FILENAMES": "/nonexistent"}
 SMALL = ("--size", "64x48")
@@ -83,6 +87,70 @@ class Rendering(harness.TestCase):
 
     def read(self, name):
         return read_png(os.path.join(self.out, name))
+
+
+class Films(Rendering):
+    def film(self, *arguments):
+        self.render(*arguments, "--mp4", "a.mp4")
+        self.assertEqual(os.listdir(self.out), ["a.mp4"])
+        return Film(f"{self.out}/a.mp4")
+
+    def test_a_film_has_exactly_the_pictures_of_its_clip(self):
+        film = self.film(f"{self.root}/wave", *SMALL, "--fps", 25)  # 48 frames at 24 a second
+        self.assertEqual(film.times, [Fraction(k, 25) for k in range(50)])
+        self.assertEqual((film.duration, film.size), (2, (64, 48)))
+        self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL, "--closed", "--duration", 2.5).times), 75)
+        self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL, "--sequence-fps", 48, "--fps", 10).times), 10)
+        self.assertEqual(len(self.film(f"{self.root}/cup.obj", *SMALL).times), 1)
+
+    def test_it_shows_what_pictures_of_its_times_show(self):
+        film = self.film(f"{self.root}/wave", *SMALL, "--from", 0.5, "--to", 1.5, "--fps", 10)
+        decoded = film.pictures()
+        self.assertEqual(len(decoded), 10)
+        for k in (0, 5, 9):
+            self.render(f"{self.root}/wave", *SMALL, "--at", 0.5 + k / 10, "-o", "one.png")
+            with open(f"{self.out}/one.png", "rb") as f:
+                self.assertLess(distance(decoded[k], Picture.of_png(f.read())), 3, k)
+
+    def test_a_file_of_edits_finds_its_assets_beside_it(self):
+        edits = [{"method": "actor.add", "params": {"actor": "w", "asset": "wave", "fps": 24}},
+                 {"method": "camera.set", "params": {"eye": [0.5, 0.5, 4], "target": [0.5, 0.5, 0]}}]
+        for folder, more in ((self.root, ()), (self.folder(), ("--assets", self.root))):
+            with open(f"{folder}/scene.json", "w") as f:
+                json.dump(edits, f)
+            film = self.film(f"{folder}/scene.json", *SMALL, "--fps", 12, *more)
+            self.assertEqual(len(film.times), 24)
+        os.remove(f"{self.out}/a.mp4")
+        self.refuses(f"{self.folder()}/none.json", "--mp4", "a.mp4", says=("none.json",))
+        self.refuses(f"{folder}/scene.json", "--mp4", "a.mp4", says=("wave",))
+        self.refuses(f"{folder}/scene.json", "--closed", says=("--closed",))
+
+    def test_refusals(self):
+        wave = f"{self.root}/wave"
+        self.refuses(wave, "--mp4", "a.avi", says=(".mp4", "a.avi"))
+        self.refuses(wave, "--mp4", "a.mp4", "--size", "63x48", says=("63x48", "even"))
+        self.refuses(wave, "--mp4", "a.mp4", "--fps", 1e-13, says=("--fps", "0.001", "1e-13"))
+        self.refuses(wave, "--mp4", "a.mp4", "--from", 3, says=("--from", "2"))
+        self.refuses(wave, "--mp4", "a.mp4", "--from", 1, "--to", 0.5, says=("--to",))
+        self.refuses(wave, "--mp4", "none/a.mp4", says=("none/a.mp4", "No such file"))
+        for more in (("--at", 0), ("-o", "a.png"), ("--sheet",)):
+            self.refuses(wave, "--mp4", "a.mp4", *more, code=2)
+        self.refuses(wave, "--from", 1, code=2)
+
+    def test_another_film_is_replaced_when_the_new_one_is_whole(self):
+        with open(f"{self.out}/a.mp4", "w") as f:
+            f.write("old")
+        self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL).times), 60)
+
+    def test_one_that_is_killed_leaves_nothing_under_the_name(self):
+        program = subprocess.Popen([TWEEND, "render", f"{self.root}/wave", "--mp4", "a.mp4", "--to", "100000"], cwd=self.out,
+                                   preexec_fn=harness.die_with_parent)
+        descriptors = f"/proc/{program.pid}/fd"
+        wait_until(lambda: any(os.readlink(f"{descriptors}/{fd}").startswith(self.out) for fd in os.listdir(descriptors)
+                               if os.path.lexists(f"{descriptors}/{fd}")), "a file")
+        program.kill()
+        program.wait()
+        self.assertEqual([n for n in os.listdir(self.out) if not n.startswith(".")], [])
 
 
 class Refusals(Rendering):

@@ -1,6 +1,7 @@
 """tweenctl against a running server, as one would use it."""
 import json
 import os
+import re
 import shutil
 import socket
 import subprocess
@@ -297,6 +298,19 @@ class Watching(Remote):
         self.assertEqual(len(packets), 20)
         self.assertEqual([p["sequence"] for p in packets], sorted({p["sequence"] for p in packets}))
         self.assertEqual({p["vertices"] for p in packets}, {3})
+
+    def test_watch_compressed_vertices(self):
+        self.ctl("seek", 0.05)
+        box = lambda *options: [float(x) for x in re.findall(r"-?[\d.e-]+", self.ctl("watch", "vertices", "--count", 1, *options).split("vertices, ")[1])]
+        plain = box()
+        self.assertEqual(len(plain), 6)
+        for encoding in ("q16", "meshopt"):
+            for found, expected in zip(box("--encoding", encoding), plain, strict=True):
+                self.assertAlmostEqual(found, expected, delta=1e-3, msg=encoding)
+        self.ctl("play")
+        for encoding in ("q16", "meshopt"):
+            lines = self.ctl("--json", "watch", "vertices", "--encoding", encoding, "--count", 10, "--rate", 120).splitlines()
+            self.assertEqual({json.loads(text)["vertices"] for text in lines}, {3})
 
     def test_watch_what_does_not_move(self):
         self.assertEqual(len(self.ctl("--json", "watch", "vertices", "--count", 1).splitlines()), 1)

@@ -2,6 +2,7 @@
 import json
 import math
 import os
+import re
 
 import harness
 from test_tweenctl import Remote
@@ -73,6 +74,21 @@ class Poses(Remote):
         self.assertRegex(line, r"3 joints, root at \(1, 2, 3\)")
         packet = self.json("watch", "pose", "--count", 1)
         self.assertEqual((packet["joints"], packet["weights"], packet["bytes"]), (3, 0, 120))
+
+    def test_a_compressed_stream_shows_the_same(self):
+        self.ctl("keyframe", "add", "--time", 0, "--pose", '{"root":{"translation":[1,2,3]}}')
+        self.ctl("keyframe", "add", "--time", 1, "--pose", '{"root":{"translation":[5,2,3]}}')
+        self.ctl("seek", 0.5)
+        line = self.ctl("watch", "pose", "--encoding", "q16", "--count", 1)
+        x, y, z = map(float, re.search(r"3 joints, root at \((.*), (.*), (.*)\)", line).groups())
+        for found, expected in ((x, 3), (y, 2), (z, 3)):
+            self.assertAlmostEqual(found, expected, delta=1e-3)
+        self.ctl("play", "--loop", "repeat")
+        packets = [json.loads(text) for text in
+                   self.ctl("--json", "watch", "pose", "--encoding", "q16", "--delivery", "every", "--count", 30).splitlines()]
+        numbers = [p["sequence"] for p in packets]
+        self.assertEqual(numbers, list(range(numbers[0], numbers[0] + 30)))
+        self.assertTrue(any("key" not in p["flags"] for p in packets), "most need their predecessor")
 
     def test_mistakes_are_told_in_a_line(self):
         self.ctl("pose", "set", "{arm}", code=2)
