@@ -9,13 +9,12 @@
 #include <cstdio>
 #include <memory>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "bench/support/picture_viewer.hpp"
 #include "bench/support/ratio.hpp"
 #include "bench/support/server_process.hpp"
-#include "bench/support/sphere_scene.hpp"
+#include "bench/support/server_requests.hpp"
 
 namespace {
 
@@ -25,37 +24,6 @@ constexpr std::size_t kMany = 8;
 constexpr int kRounds = 7;
 constexpr double kRoundSeconds = 1.2;
 constexpr double kSettleSeconds = 0.2;
-
-std::string request(const std::string& method, const std::string& params) {
-  return fmt::format(R"({{"jsonrpc":"2.0","id":7,"method":"{}","params":{}}})", method, params) + "\n";
-}
-
-void must(LineClient& client, const std::string& method, const std::string& params) {
-  const std::string_view answer = client.exchange(request(method, params));
-  if (answer.find("\"result\":") == std::string_view::npos) {
-    give_up(method + ": " + std::string(answer.substr(0, 400)));
-  }
-}
-
-double stat(LineClient& client, const std::string& name) {
-  const std::string_view answer = client.exchange(request("server.stats", "{}"));
-  const std::string key = "\"tweend_" + name + "\":";
-  const std::size_t at = answer.find(key);
-  if (at == std::string_view::npos) give_up("server.stats has no " + name);
-  return std::stod(std::string(answer.substr(at + key.size(), 20)));
-}
-
-void play_sphere(LineClient& client) {
-  const SphereGrid sphere;
-  must(client, "actor.add",
-       fmt::format(R"({{"actor":"sphere","mesh":{{"positions":[{}],"indices":[{}]}},"closed":true,"duration":2}})",
-                   fmt::join(sphere.positions(0.0F), ","), fmt::join(sphere.indices(), ",")));
-  for (const float lobes : {0.0F, 0.2F}) {
-    must(client, "keyframe.add",
-         fmt::format(R"({{"actor":"sphere","vertices":{{"positions":[{}]}}}})", fmt::join(sphere.positions(lobes), ",")));
-  }
-  must(client, "playback.play", R"({"loop":"repeat"})");
-}
 
 /// @param side  from 0: where the eye stands around the sphere
 void add_viewer(Viewers& viewers, const ServerProcess& server, std::size_t side) {
@@ -130,7 +98,8 @@ void print(const char* name, const Seen& seen) {
 int main() {
   const ServerProcess server;
   LineClient client(server.port());
-  play_sphere(client);
+  add_sphere(client, {}, 0.2F);
+  must(client, "playback.play", R"({"loop":"repeat"})");
   Viewers viewers;
   const auto crowd = [&](bool many, bool same) {
     viewers.resize(1);  // the first one stays, so that the producer does

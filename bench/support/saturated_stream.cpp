@@ -33,7 +33,7 @@ PictureThreads::~PictureThreads() {
 
 SaturatedStream::SaturatedStream(PictureThreads& threads, const stage::SceneViewPtr& view, streams::FramesSpec spec)
     : threads_(threads),
-      content_(std::make_shared<streams::FrameContent>(std::move(spec), threads.strand, threads.workers, threads.renderer,
+      content_(std::make_shared<streams::FrameContent>(std::move(spec), 60.0, threads.strand, threads.workers, threads.desk,
                                                        static_cast<streams::ContentOwner&>(*this))) {
   if (!content_->follow(view)) give_up(content_->what_is_gone());
 }

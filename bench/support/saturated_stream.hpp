@@ -26,6 +26,7 @@ class PictureThreads {
   boost::asio::io_context strand{1};
   WorkerPool workers{2};
   render::RenderThread renderer;
+  streams::PictureDesk desk{strand, workers, renderer};
 
  private:
   boost::asio::executor_work_guard<boost::asio::io_context::executor_type> work_{strand.get_executor()};
