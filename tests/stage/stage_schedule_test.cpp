@@ -91,7 +91,7 @@ TEST_F(StageSchedule, HasALimit) {
 }
 
 TEST_F(StageSchedule, IsExactHoweverLateTheTick) {
-  const ClockUs at = steady_now_us() + 20'000;
+  const ClockUs at = steady_now_us() + 100'000;
   ASSERT_TRUE(schedule({at, false}, acts(&Player::play)));
   EXPECT_FALSE(player().playing);
   // The strand is busy with something else when the time comes.
@@ -107,7 +107,7 @@ TEST_F(StageSchedule, IsExactHoweverLateTheTick) {
 }
 
 TEST_F(StageSchedule, CarriesOutInTheOrderOfReadingsAndThenOfArrival) {
-  const ClockUs at = steady_now_us() + 20'000;
+  const ClockUs at = steady_now_us() + 100'000;
   const auto speed = [&](double value) {
     return acts([value](Player& p, const PlayRange& r, ClockUs now) { p.set_speed(r, value, now); });
   };
@@ -130,7 +130,7 @@ TEST_F(StageSchedule, CarriesOutInTheOrderOfReadingsAndThenOfArrival) {
 
 /// A command for now never sees a player as it was before what was due earlier.
 TEST_F(StageSchedule, ComesBeforeWhatIsAskedLater) {
-  const ClockUs at = steady_now_us() + 2'000;
+  const ClockUs at = steady_now_us() + 100'000;
   ASSERT_TRUE(schedule({at, false}, acts(&Player::play)));
   std::promise<bool> seen;
   stage->post([&] {
@@ -162,7 +162,7 @@ TEST_F(StageSchedule, TellsWhenItFails) {
   const TimedAct fails = [](ClockUs, const EditDone& done) {
     done(fail(ErrorCode::NotFound, "no such actor", "params.actor"));
   };
-  ASSERT_TRUE(schedule({steady_now_us() + 1'000, false}, fails));
+  ASSERT_TRUE(schedule({steady_now_us() + 100'000, false}, fails));
   stage.wait_for(Kind::ScheduleFailed, 1);
   const auto told = stage.told().back();
   EXPECT_EQ(told.scene, "main");
@@ -175,7 +175,7 @@ TEST_F(StageSchedule, DoesEditsAsOfTheirTime) {
   const TimedAct edits = [this](ClockUs, const EditDone& done) {
     stage->plan({"main", "camera.set", {}, {}}, RunningStage::applies(SetSceneSettings{test::with_grid(true)}), done);
   };
-  ASSERT_TRUE(schedule({steady_now_us() + 1'000, false}, edits));
+  ASSERT_TRUE(schedule({steady_now_us() + 100'000, false}, edits));
   stage.wait_for(Kind::Edited, 1);
   EXPECT_TRUE(stage.view()->scene->settings.grid);
   EXPECT_EQ(stage.told().back().edit->method, "camera.set");
