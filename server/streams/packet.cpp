@@ -55,11 +55,8 @@ void PacketPool::give_back(std::unique_ptr<Packet> packet) {
   if (free_.size() < most) free_.push_back(std::move(packet));
 }
 
-void intrusive_ptr_add_ref(const Packet* packet) noexcept { packet->references_.fetch_add(1, std::memory_order_relaxed); }
-
-void intrusive_ptr_release(const Packet* packet) noexcept {
-  if (packet->references_.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
-  std::unique_ptr<Packet> last(const_cast<Packet*>(packet));
+void Packet::give_back() const noexcept {
+  std::unique_ptr<Packet> last(const_cast<Packet*>(this));
   // The packet must not keep alive the pool that keeps the packet.
   const std::shared_ptr<PacketPool> pool = std::move(last->pool_);
   pool->give_back(std::move(last));

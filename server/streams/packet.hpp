@@ -56,6 +56,7 @@ class Packet {
   friend class PacketPool;
   friend void intrusive_ptr_add_ref(const Packet* packet) noexcept;
   friend void intrusive_ptr_release(const Packet* packet) noexcept;
+  void give_back() const noexcept;
   mutable std::atomic<std::size_t> references_{0};
   std::shared_ptr<PacketPool> pool_;
 };
@@ -72,7 +73,6 @@ class PacketPool : public std::enable_shared_from_this<PacketPool> {
   [[nodiscard]] NewPacketPtr take();
 
  private:
-  friend void intrusive_ptr_release(const Packet* packet) noexcept;
   friend class Packet;
   void give_back(std::unique_ptr<Packet> packet);
 
@@ -82,7 +82,11 @@ class PacketPool : public std::enable_shared_from_this<PacketPool> {
   std::vector<std::unique_ptr<Packet>> free_;
 };
 
-void intrusive_ptr_add_ref(const Packet* packet) noexcept;
-void intrusive_ptr_release(const Packet* packet) noexcept;
+inline void intrusive_ptr_add_ref(const Packet* packet) noexcept {
+  packet->references_.fetch_add(1, std::memory_order_relaxed);
+}
+inline void intrusive_ptr_release(const Packet* packet) noexcept {
+  if (packet->references_.fetch_sub(1, std::memory_order_acq_rel) == 1) packet->give_back();
+}
 
 }  // namespace tweend::streams
