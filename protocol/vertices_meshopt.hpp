@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "protocol/pose_q16.hpp"
+#include "protocol/encoded.hpp"
 #include "protocol/vertex_quanta.hpp"
 #include "protocol/vertex_residuals.hpp"
 #include "server/base/result.hpp"
