@@ -19,7 +19,7 @@ class VerticesMeshoptEncoder {
   /// Bytes that a packet may take at most.
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept;
 
-  /// @param positions  shape [n × 3], finite
+  /// @param positions  shape [n × 3]
   /// @param normals    shape [n × 3], unit length or zero
   /// @param key        whether it has to decode on its own; without it, it still may
   /// @param out        room for most_bytes(n)
