@@ -67,7 +67,7 @@ stream.packets.add((packet) => {
   });
   meter.receive(performance.now(), packet.payload.length);
   view.push(packet);
-  if (gaps.receive(performance.now(), packet)) encodings.too_slow();
+  if (gaps.receive(performance.now(), packet.sequence)) encodings.too_slow();
 });
 view.drawn.add((drawn) => {
   last_drawn = drawn;
