@@ -279,6 +279,37 @@ TEST(PoseQ16, JumpsLeaveTheStepsOfWhatMovesLittle) {
   }
 }
 
+/// What docs/PROTOCOL.md allows, worked out from the values and from which packets are keys.
+TEST(PoseQ16, ErrorsAreWhatThePageSaysWhateverMoves) {
+  Stream stream;
+  Noise noise(21);
+  Pose pose = resting_pose(4, 0);
+  stream.send(pose);
+  std::array<double, 4> most{}, far{}, base{};
+  most.fill(std::ldexp(1.0, -18));
+  for (int i = 1; i < 3000; ++i) {
+    const bool asked = i % 40 == 0, jumped = i % 333 == 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      float& x = pose.translation(j)[0];
+      x = jumped ? 64.0F * noise.next() : x + std::ldexp(noise.next(), -5 * static_cast<int>(j) - (i / 500 % 2) * 6);
+      if (!jumped) far[j] = std::max(far[j], std::abs(x - base[j]));
+    }
+    PoseQ16Encoder unasked = stream.encoder;
+    std::vector<std::byte> room(PoseQ16Encoder::most_bytes(4, 0));
+    const bool left = !jumped && unasked.encode(pose.joints, {}, false, room).key;
+    const auto sent = stream.write(pose, asked, jumped);
+    ASSERT_EQ(sent.key, asked || jumped || left);
+    Pose out = stream.read(sent, pose);
+    for (std::size_t j = 0; j < 4; ++j) {
+      const float x = pose.translation(j)[0];
+      ASSERT_NEAR(out.translation(j)[0], x, sent.key ? 0.0 : most[j] + std::ldexp(std::abs(x), -24)) << i << ' ' << j;
+      if (!sent.key) continue;
+      if (far[j] > 0) most[j] = std::max({4 * far[j] / 32767, std::ldexp(1.0, -25), left ? most[j] : most[j] / 4});
+      far[j] = 0, base[j] = x;
+    }
+  }
+}
+
 TEST(PoseQ16, WhatIsNotFiniteIsSentAsWhatIs) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
