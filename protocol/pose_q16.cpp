@@ -161,11 +161,13 @@ std::size_t PoseQ16Encoder::most_bytes(std::size_t joints, std::size_t weights) 
 }
 
 Encoded PoseQ16Encoder::encode(std::span<const float> joints, std::span<const float> weights, bool key,
-                               std::span<std::byte> out) {
+                               std::span<std::byte> out, bool jumped) {
   const std::size_t count = joints.size() / kFloatsPerJoint;
   bool left = false;
   if (!is_known_ || count != rotations_.size() || weights.size() != weight_count_) {
     reset(count, weights.size());
+    key = true;
+  } else if (jumped) {
     key = true;
   } else {
     // All three, also after one that is out of reach: exponents are chosen by what was observed.

@@ -5,18 +5,13 @@
 #include <span>
 #include <vector>
 
+#include "protocol/encoded.hpp"
 #include "protocol/packet.hpp"
 #include "protocol/ranged_values.hpp"
 #include "protocol/smallest_three.hpp"
 #include "server/base/result.hpp"
 
 namespace tweend::protocol {
-
-/// What an encoder that leaves out what has not changed has written.
-struct Encoded {
-  std::size_t bytes = 0;
-  bool key = false;  ///< it decodes on its own: what was asked for, or what had to be
-};
 
 /// Writes poses as `q16` (docs/PROTOCOL.md, section 6.2): joints that changed, rotations by their smallest three. Keeps what
 /// the reader knows. Allocates only where the skeleton is larger than any before. One thread at a time.
@@ -25,12 +20,15 @@ class PoseQ16Encoder {
   /// Bytes that a packet may take at most.
   [[nodiscard]] static std::size_t most_bytes(std::size_t joints, std::size_t weights) noexcept;
 
-  /// @param joints   shape [joints × 10]: translation xyz, rotation xyzw, scale xyz; local space, finite, rotations unit
-  /// @param weights  of the morph targets, finite
+  /// What is not finite is sent as the largest float of its sign, NaN as at rest; a rotation that is not of unit length as
+  /// none.
+  /// @param joints   shape [joints × 10]: translation xyz, rotation xyzw, scale xyz; local space
+  /// @param weights  of the morph targets
   /// @param key      whether it has to decode on its own; without it, it still may
   /// @param out      room for most_bytes()
+  /// @param jumped   whether no movement has led here: then it is a key, and the way says nothing of how far things move
   [[nodiscard]] Encoded encode(std::span<const float> joints, std::span<const float> weights, bool key,
-                               std::span<std::byte> out);
+                               std::span<std::byte> out, bool jumped = false);
 
  private:
   void reset(std::size_t joints, std::size_t weights);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "protocol/bitmap.hpp"
 #include "protocol/little_endian.hpp"
@@ -19,6 +20,11 @@ int next_exponent(int exponent, double farthest, bool left) noexcept {
   int wanted = 0;
   std::frexp(kHeadroom * farthest / kMostSteps, &wanted);  // the quotient is below 2^wanted
   return std::clamp(std::max(wanted, exponent - (left ? 0 : kFinerByAtMost)), kLeastExponent, kMostExponent);
+}
+
+float tame(float value, float rest) noexcept {
+  constexpr float kMost = std::numeric_limits<float>::max();
+  return std::isnan(value) ? rest : std::clamp(value, -kMost, kMost);
 }
 
 /// @param steps  at most kMostSteps and a half from zero
@@ -39,12 +45,13 @@ std::size_t RangedWriter::most_bytes(const RangedKind& kind, std::size_t element
 }
 
 bool RangedWriter::observe(const float* values, std::size_t stride) noexcept {
-  const std::size_t components = state_.kind.components;
+  const RangedKind& kind = state_.kind;
   bool reaches = true;
   for (std::size_t e = 0; e < state_.elements(); ++e) {
     double far = 0.0;
-    for (std::size_t k = 0; k < components; ++k) {
-      far = std::max(far, std::abs(double{values[e * stride + k]} - double{state_.base[e * components + k]}));
+    for (std::size_t k = 0; k < kind.components; ++k) {
+      far = std::max(far,
+                     std::abs(double{tame(values[e * stride + k], kind.rest)} - double{state_.base[e * kind.components + k]}));
     }
     farthest_[e] = std::max(farthest_[e], far);
     if (far > 0.0) reaches = reaches && far <= kMostSteps * state_.step(e);
@@ -61,29 +68,29 @@ std::size_t RangedWriter::write_key(const float* values, std::size_t stride, boo
     farthest_[e] = 0.0;
     bool rests = state_.exponent[e] == kind.rest_exponent;
     for (std::size_t k = 0; k < kind.components; ++k) {
-      const float value = values[e * stride + k];
+      const float value = tame(values[e * stride + k], kind.rest);
       state_.base[e * kind.components + k] = value;
       state_.integer[e * kind.components + k] = 0;
       rests = rests && value == kind.rest;
     }
     if (rests) continue;
     changed.set(e);
-    for (std::size_t k = 0; k < kind.components; ++k, at += 4) put_float(at, values[e * stride + k]);
+    for (std::size_t k = 0; k < kind.components; ++k, at += 4) put_float(at, state_.base[e * kind.components + k]);
     *at++ = static_cast<std::byte>(state_.exponent[e]);
   }
   return changed.any() ? static_cast<std::size_t>(at - out) : 0;
 }
 
 std::size_t RangedWriter::write_delta(const float* values, std::size_t stride, std::byte* out) noexcept {
-  const std::size_t components = state_.kind.components;
+  const RangedKind& kind = state_.kind;
   BitmapWriter changed(out, state_.elements());
   std::byte* at = out + bitmap_bytes(state_.elements());
   for (std::size_t e = 0; e < state_.elements(); ++e) {
     const double per_step = power_of_two(-state_.exponent[e]);
-    std::int16_t* const known = &state_.integer[e * components];
+    std::int16_t* const known = &state_.integer[e * kind.components];
     bool differs = false;
-    for (std::size_t k = 0; k < components; ++k) {
-      const double offset = double{values[e * stride + k]} - double{state_.base[e * components + k]};
+    for (std::size_t k = 0; k < kind.components; ++k) {
+      const double offset = double{tame(values[e * stride + k], kind.rest)} - double{state_.base[e * kind.components + k]};
       const std::int16_t integer = rounded(offset * per_step);
       put(at + 2 * k, static_cast<std::uint16_t>(integer));
       differs = differs || integer != known[k];
@@ -91,7 +98,7 @@ std::size_t RangedWriter::write_delta(const float* values, std::size_t stride, s
     }
     if (!differs) continue;  // what was put there is put over
     changed.set(e);
-    at += 2 * components;
+    at += 2 * kind.components;
   }
   return changed.any() ? static_cast<std::size_t>(at - out) : 0;
 }

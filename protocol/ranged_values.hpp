@@ -52,7 +52,8 @@ struct RangedState {
   std::vector<std::int8_t> exponent;  ///< shape [elements]
 };
 
-/// The writer's side: chooses exponents by how far values move.
+/// The writer's side: chooses exponents by how far values move. What is not finite is taken for the largest float of its sign,
+/// NaN for what is at rest.
 class RangedWriter {
  public:
   explicit RangedWriter(const RangedKind& kind) : state_(kind) {}
@@ -67,7 +68,7 @@ class RangedWriter {
   /// @return whether integers reach them all
   [[nodiscard]] bool observe(const float* values, std::size_t stride) noexcept;
 
-  /// Writes bitmap and elements that are not at rest, with new bases.
+  /// Writes bitmap and elements that are not at rest, with new bases, and exponents by what was observed since the last key.
   /// @param left  whether this key is there because values were out of reach; exponents only grow then
   /// @return the bytes written; 0 where all are at rest
   [[nodiscard]] std::size_t write_key(const float* values, std::size_t stride, bool left, std::byte* out) noexcept;

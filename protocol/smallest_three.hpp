@@ -19,8 +19,12 @@ inline constexpr int kMost = 16383;
 inline constexpr double kPerUnit = kMost * 1.4142135623730951;
 inline constexpr SmallestThree kIdentity{kZero | 0x8000, kZero | 0x8000, kZero};
 
-/// @param q  xyzw, unit
+/// @param q  xyzw; what is not of unit length, nor finite, is taken for the identity
 [[nodiscard]] inline SmallestThree pack(const float* q) noexcept {
+  constexpr double kTolerance = 1e-2;  // of the square; up to a third, what is left out has room
+  double square = 0.0;
+  for (unsigned i = 0; i < 4; ++i) square += double{q[i]} * q[i];
+  if (!(std::abs(square - 1.0) <= kTolerance)) return kIdentity;
   unsigned largest = 0;
   for (unsigned i = 1; i < 4; ++i) {
     if (std::abs(q[i]) > std::abs(q[largest])) largest = i;

@@ -29,8 +29,17 @@ using Words = hn::Rebind<std::uint16_t, Floats>;
 using V = hn::Vec<Floats>;
 constexpr std::size_t kLanes = hn::MaxLanes(Floats());
 constexpr float kShortest = 1e-18F;  ///< sum of a normal's coordinates below which it has no direction
+constexpr float kLargest = std::numeric_limits<float>::max();
 
 static_assert(std::endian::native == std::endian::little, "integers are stored in the machine's order, which is the wire's");
+
+/// A coordinate that extents can reach, 0 in place of NaN.
+HWY_INLINE V tame(V coordinate) {
+  const Floats d;
+  const V number = hn::IfThenElseZero(hn::Eq(coordinate, coordinate), coordinate);
+  return hn::Clamp(number, hn::Set(d, -kFarthest), hn::Set(d, kFarthest));
+}
+float tame(float coordinate) { return coordinate == coordinate ? std::clamp(coordinate, -kFarthest, kFarthest) : 0.0F; }
 
 /// Each of the three vectors of a step holds the axes in turn, and the same ones in every step.
 Bounds bounds_here(const float* positions, std::size_t size) {
@@ -38,14 +47,14 @@ Bounds bounds_here(const float* positions, std::size_t size) {
   constexpr std::size_t kStep = 3 * kLanes;
   float least[kStep];
   float most[kStep];
-  for (std::size_t i = 0; i < kStep; ++i) least[i] = most[i] = positions[i % 3];
+  for (std::size_t i = 0; i < kStep; ++i) least[i] = most[i] = tame(positions[i % 3]);
   V low0 = hn::LoadU(d, least), low1 = hn::LoadU(d, least + kLanes), low2 = hn::LoadU(d, least + 2 * kLanes);
   V high0 = low0, high1 = low1, high2 = low2;
   std::size_t i = 0;
   for (; i + kStep <= size; i += kStep) {
-    const V a = hn::LoadU(d, positions + i);
-    const V b = hn::LoadU(d, positions + i + kLanes);
-    const V c = hn::LoadU(d, positions + i + 2 * kLanes);
+    const V a = tame(hn::LoadU(d, positions + i));
+    const V b = tame(hn::LoadU(d, positions + i + kLanes));
+    const V c = tame(hn::LoadU(d, positions + i + 2 * kLanes));
     low0 = hn::Min(low0, a), high0 = hn::Max(high0, a);
     low1 = hn::Min(low1, b), high1 = hn::Max(high1, b);
     low2 = hn::Min(low2, c), high2 = hn::Max(high2, c);
@@ -53,8 +62,8 @@ Bounds bounds_here(const float* positions, std::size_t size) {
   hn::StoreU(low0, d, least), hn::StoreU(low1, d, least + kLanes), hn::StoreU(low2, d, least + 2 * kLanes);
   hn::StoreU(high0, d, most), hn::StoreU(high1, d, most + kLanes), hn::StoreU(high2, d, most + 2 * kLanes);
   for (; i < size; ++i) {
-    least[i % 3] = std::min(least[i % 3], positions[i]);
-    most[i % 3] = std::max(most[i % 3], positions[i]);
+    least[i % 3] = std::min(least[i % 3], tame(positions[i]));
+    most[i % 3] = std::max(most[i % 3], tame(positions[i]));
   }
   Bounds bounds{{least[0], least[1], least[2]}, {most[0], most[1], most[2]}};
   for (std::size_t k = 3; k < kStep; ++k) {
@@ -76,7 +85,7 @@ struct Scale {
 
 HWY_INLINE hn::Vec<Words> quantise_axis(V position, float min, float per_unit) {
   const Floats d;
-  const V steps = hn::Mul(hn::Sub(position, hn::Set(d, min)), hn::Set(d, per_unit));
+  const V steps = hn::Mul(hn::Sub(tame(position), hn::Set(d, min)), hn::Set(d, per_unit));
   return hn::DemoteTo(Words(), hn::NearestInt(hn::Min(steps, hn::Set(d, float{kPositionMost}))));
 }
 
@@ -89,7 +98,7 @@ HWY_INLINE OctahedralLanes quantise_direction(V x, V y, V z) {
   const Floats d;
   const V most = hn::Set(d, float{Octahedral<kBits>::kMost});
   const V sum = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
-  const auto has_direction = hn::Gt(sum, hn::Set(d, kShortest));
+  const auto has_direction = hn::And(hn::Gt(sum, hn::Set(d, kShortest)), hn::Le(sum, hn::Set(d, kLargest)));
   const V scale = hn::Div(most, sum);
   const V u = hn::Mul(x, scale);
   const V v = hn::Mul(y, scale);
@@ -197,7 +206,7 @@ Bounds bounds_of(std::span<const float> positions) noexcept {
 }
 
 PositionGrid::PositionGrid(const Bounds& bounds) noexcept : min(bounds.min) {
-  for (std::size_t k = 0; k < 3; ++k) extent[k] = std::min(bounds.max[k] - bounds.min[k], std::numeric_limits<float>::max());
+  for (std::size_t k = 0; k < 3; ++k) extent[k] = bounds.max[k] - bounds.min[k];
 }
 
 void quantise_to_planes(std::span<const float> positions, std::span<const float> normals, const PositionGrid& grid,

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 namespace tweend::protocol {
@@ -13,7 +14,10 @@ struct Bounds {
   std::array<float, 3> max{};
 };
 
-/// @param positions  shape [n × 3], finite
+/// Coordinates are taken within ± this, so that an extent is a float32; NaN for 0. Normals that are not finite for zero ones.
+inline constexpr float kFarthest = std::numeric_limits<float>::max() / 2.0F;
+
+/// @param positions  shape [n × 3]
 [[nodiscard]] Bounds bounds_of(std::span<const float> positions) noexcept;
 
 inline constexpr int kPositionMost = 65535;
@@ -23,7 +27,7 @@ inline constexpr int kShortNormalBits = 12;
 /// Sixteen bits a coordinate, evenly over a box: position = min + integer · extent / 65535.
 struct PositionGrid {
   PositionGrid() = default;
-  /// Over `bounds`; an extent that float32 can't hold is cut to the largest it can.
+  /// Over `bounds`, which lie within ± kFarthest.
   explicit PositionGrid(const Bounds& bounds) noexcept;
 
   std::array<float, 3> min{};
@@ -43,7 +47,7 @@ struct VertexPlanes {
 
 /// Positions cut to the grid; normals octahedral at kShortNormalBits, zero ones as its kNone. Values don't depend on the
 /// machine's vector unit, nor on a vertex's place. Any thread.
-/// @param positions  shape [n × 3], finite
+/// @param positions  shape [n × 3]
 /// @param normals    shape [n × 3], unit length or zero
 void quantise_to_planes(std::span<const float> positions, std::span<const float> normals, const PositionGrid& grid,
                         const VertexPlanes& out) noexcept;

@@ -201,8 +201,7 @@ void write_residuals(VertexHistory& history, bool key, std::span<std::byte> fore
   }
 }
 
-Status read_residuals(VertexHistory& history, bool key, std::span<const std::byte> foretellings,
-                      std::span<const std::byte> residuals) {
+Status check_foretellings(bool key, std::span<const std::byte> foretellings) {
   const unsigned most = key ? kOrders : kForetellings;
   for (const std::byte byte : foretellings) {
     const auto nibbles = std::to_integer<unsigned>(byte);
@@ -211,6 +210,11 @@ Status read_residuals(VertexHistory& history, bool key, std::span<const std::byt
                                                 key ? "key" : "packet that is none", nibbles));
     }
   }
+  return {};
+}
+
+void read_residuals(VertexHistory& history, std::span<const std::byte> foretellings,
+                    std::span<const std::byte> residuals) noexcept {
   std::array<Sums, kPlanes> sums{};
   for (std::size_t block = 0; block < foretellings.size(); ++block) {
     const std::size_t first = block * kBlockVertices;
@@ -223,7 +227,6 @@ Status read_residuals(VertexHistory& history, bool key, std::span<const std::byt
       }
     }
   }
-  return {};
 }
 
 }  // namespace tweend::protocol

@@ -54,9 +54,12 @@ inline constexpr std::size_t kResidualStride = 12;
 void write_residuals(VertexHistory& history, bool key, std::span<std::byte> foretellings,
                      std::span<std::byte> residuals) noexcept;
 
+/// @return Parse where a byte is no foretelling, or one by packets before in a key
+[[nodiscard]] Status check_foretellings(bool key, std::span<const std::byte> foretellings);
+
 /// The way back: gives history.now() its values.
-/// @return Parse where a byte is no foretelling, or one by packets before in a key; history is unchanged then
-[[nodiscard]] Status read_residuals(VertexHistory& history, bool key, std::span<const std::byte> foretellings,
-                                    std::span<const std::byte> residuals);
+/// @param foretellings  that check_foretellings() has passed
+void read_residuals(VertexHistory& history, std::span<const std::byte> foretellings,
+                    std::span<const std::byte> residuals) noexcept;
 
 }  // namespace tweend::protocol

@@ -4,7 +4,6 @@
 #include <meshoptimizer.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "protocol/octahedral.hpp"
 #include "protocol/vertex_grid_wire.hpp"
@@ -25,16 +24,15 @@ bool holds(const Bounds& room, const Bounds& bounds) {
 /// `bounds` and a margin: at least a sixteenth of the extent, so that breathing needs no key, and at most half of the
 /// largest extent, which costs one bit.
 Bounds with_room(const Bounds& bounds, const Bounds& last) {
-  constexpr float kMost = std::numeric_limits<float>::max();
   std::array<float, 3> extent;
-  for (std::size_t k = 0; k < 3; ++k) extent[k] = std::min(bounds.max[k] - bounds.min[k], kMost);
+  for (std::size_t k = 0; k < 3; ++k) extent[k] = bounds.max[k] - bounds.min[k];
   const float most = *std::max_element(extent.begin(), extent.end()) / 2.0F;
   Bounds room;
   for (std::size_t k = 0; k < 3; ++k) {
     const float least = extent[k] / 16.0F;
     const auto margin = [&](float moved) { return std::clamp(kPacketsAhead * moved, least, most); };
-    room.min[k] = std::max(bounds.min[k] - margin(last.min[k] - bounds.min[k]), -kMost);
-    room.max[k] = std::min(bounds.max[k] + margin(bounds.max[k] - last.max[k]), kMost);
+    room.min[k] = std::max(bounds.min[k] - margin(last.min[k] - bounds.min[k]), -kFarthest);
+    room.max[k] = std::min(bounds.max[k] + margin(bounds.max[k] - last.max[k]), kFarthest);
   }
   return room;
 }
@@ -47,6 +45,8 @@ std::size_t VerticesMeshoptEncoder::most_bytes(std::size_t vertices) noexcept {
 
 Encoded VerticesMeshoptEncoder::encode(std::span<const float> positions, std::span<const float> normals, bool key,
                                        std::span<std::byte> out) {
+  // A setting of the whole library: later versions write by default what PROTOCOL.md does not promise.
+  [[maybe_unused]] static const bool version_is_0 = (meshopt_encodeVertexVersion(0), true);
   const std::size_t n = positions.size() / 3;
   const Bounds bounds = bounds_of(positions);
   is_known_ = is_known_ && n == history_.vertices();
@@ -87,6 +87,8 @@ Status VerticesMeshoptDecoder::decode(std::span<const std::byte> payload, bool k
   if (key) {
     TWEEND_ASSIGN(grid, get_grid(payload));
   }
+  const auto foretellings = payload.subspan(before_residuals - block_count(n), block_count(n));
+  TWEEND_TRY(check_foretellings(key, foretellings));
   const auto packed = payload.subspan(before_residuals);
   residuals_.resize(n * kResidualStride);
   if (n == 0 ? !packed.empty()
@@ -96,11 +98,9 @@ Status VerticesMeshoptDecoder::decode(std::span<const std::byte> payload, bool k
                 fmt::format("expected {} vertices of {} bytes as meshoptimizer packs them, found {} other bytes", n,
                             kResidualStride, packed.size()));
   }
-  if (key && n != history_.vertices()) {
-    is_known_ = false;
-    history_.resize(n);
-  }
-  TWEEND_TRY(read_residuals(history_, key, payload.subspan(before_residuals - block_count(n), block_count(n)), residuals_));
+  // Nothing is refused from here on, and until here nothing has changed.
+  history_.resize(n);
+  read_residuals(history_, foretellings, residuals_);
   const VertexPlanes now = history_.now();
   for (std::size_t v = 0; v < n; ++v) {
     const auto normal = decode_octahedral<kShortNormalBits>(static_cast<std::int16_t>(now.plane[3][v]),

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "protocol/pose_q16.hpp"
+#include "protocol/encoded.hpp"
 #include "protocol/vertex_quanta.hpp"
 #include "protocol/vertex_residuals.hpp"
 #include "server/base/result.hpp"
@@ -19,7 +19,7 @@ class VerticesMeshoptEncoder {
   /// Bytes that a packet may take at most.
   [[nodiscard]] static std::size_t most_bytes(std::size_t vertices) noexcept;
 
-  /// @param positions  shape [n × 3], finite
+  /// @param positions  shape [n × 3]
   /// @param normals    shape [n × 3], unit length or zero
   /// @param key        whether it has to decode on its own; without it, it still may
   /// @param out        room for most_bytes(n)

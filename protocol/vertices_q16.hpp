@@ -13,7 +13,7 @@ namespace tweend::protocol {
 
 /// Writes vertices as `q16`: positions quantised to the packet's own bounds, normals octahedral. Each packet decodes on its
 /// own. Any thread.
-/// @param positions  shape [n × 3], finite
+/// @param positions  shape [n × 3]
 /// @param normals    shape [n × 3], unit length or zero
 /// @param out        vertices_q16_bytes(n) bytes
 void encode_vertices_q16(std::span<const float> positions, std::span<const float> normals, std::span<std::byte> out) noexcept;

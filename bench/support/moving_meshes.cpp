@@ -46,6 +46,21 @@ MovingMesh::Frame sampled(const Surface& surface, std::size_t rows, std::size_t 
 
 double time_s(std::size_t frame) { return kBegin + static_cast<double>(frame) / kFramesPerSecond; }
 
+model::Actor imported_character(const std::string& folder, const std::string& name) {
+  auto root = assets::AssetRoot::open(folder);
+  if (!root) give_up(root.error().message);
+  std::vector<assets::AssetRoot> roots;
+  roots.push_back(std::move(*root));
+  const assets::AssetLibrary library(std::move(roots), Limits{});
+  auto imported = library.import(name);
+  if (!imported) give_up(imported.error().message);
+  model::Actor actor;
+  actor.name = name;
+  actor.model = imported->model;
+  for (model::Clip& clip : imported->clips) actor.clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
+  return actor;
+}
+
 }  // namespace
 
 MovingMesh moving_sphere() {
@@ -75,17 +90,7 @@ MovingMesh moving_flag() {
 }
 
 MovingMesh moving_character(const std::string& folder, const std::string& name) {
-  auto root = assets::AssetRoot::open(folder);
-  if (!root) give_up(root.error().message);
-  std::vector<assets::AssetRoot> roots;
-  roots.push_back(std::move(*root));
-  const assets::AssetLibrary library(std::move(roots), Limits{});
-  auto imported = library.import(name);
-  if (!imported) give_up(imported.error().message);
-  model::Actor actor;
-  actor.name = name;
-  actor.model = imported->model;
-  for (model::Clip& clip : imported->clips) actor.clips.push_back(std::make_shared<const model::Clip>(std::move(clip)));
+  const model::Actor actor = imported_character(folder, name);
   MovingMesh mesh{name, {}};
   model::Evaluator evaluator;
   for (std::size_t i = 0; i < kMovingFrames; ++i) {
@@ -97,6 +102,26 @@ MovingMesh moving_character(const std::string& folder, const std::string& name) 
     mesh.frames.push_back(std::move(frame));
   }
   return mesh;
+}
+
+MovingPose moving_pose(const std::string& folder, const std::string& name) {
+  const model::Actor actor = imported_character(folder, name);
+  const model::Skeleton& skeleton = *actor.model->skeleton;
+  MovingPose moving{name, skeleton.size(), {}};
+  model::Evaluator evaluator;
+  for (std::size_t i = 0; i < kPoseFrames; ++i) {
+    const double time = std::fmod(static_cast<double>(i) / kFramesPerSecond, actor.clips.front()->duration_s());
+    const animation::Pose& pose = evaluator.pose(actor, model::shown_clip(actor.clips.front(), time));
+    std::vector<float>& frame = moving.frames.emplace_back();
+    for (std::uint32_t j = 0; j < skeleton.size(); ++j) {
+      const animation::JointPose at = pose.joint(skeleton.place_of(j));
+      for (const float x : {at.translation.x, at.translation.y, at.translation.z, at.rotation.x, at.rotation.y, at.rotation.z,
+                            at.rotation.w, at.scale.x, at.scale.y, at.scale.z}) {
+        frame.push_back(x);
+      }
+    }
+  }
+  return moving;
 }
 
 }  // namespace tweend::bench

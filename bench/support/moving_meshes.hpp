@@ -27,4 +27,16 @@ inline constexpr std::size_t kMovingFrames = 12;
 /// @param folder  with the file `name` in it; the program ends where it can't be read
 [[nodiscard]] MovingMesh moving_character(const std::string& folder, const std::string& name);
 
+/// A skeleton's pose as a stream shows it, 60 times a second.
+struct MovingPose {
+  std::string name;
+  std::size_t joints = 0;
+  std::vector<std::vector<float>> frames;  ///< shape [joints × 10] each: translation xyz, rotation xyzw, scale xyz
+};
+
+inline constexpr std::size_t kPoseFrames = 240;
+
+/// The pose of the same, round and round.
+[[nodiscard]] MovingPose moving_pose(const std::string& folder, const std::string& name);
+
 }  // namespace tweend::bench

@@ -8,8 +8,11 @@ import { Listeners } from "./listeners.js";
 /** @typedef {"h264" | "jpeg"} FrameEncoding */
 /** @typedef {"auto" | FrameEncoding} EncodingWish */
 
-/** What a stream of at most 1280 × 720 is at 30 pictures a second: whoever decodes this decodes all that the page asks for. */
-const kTypicalCodec = "avc1.42c01f";
+/**
+ * The most that the page asks for: as many pixels as 1280 × 720 have, 30 times a second, which in some shapes are more macroblocks
+ * than level 3.1 has.
+ */
+const kLargestCodec = "avc1.42c020";
 
 /**
  * Whether this browser decodes live H.264. WebCodecs is there on pages that came by https or from localhost.
@@ -19,7 +22,7 @@ const kTypicalCodec = "avc1.42c01f";
 export async function obstacle_to_h264(scope = globalThis) {
   if (!scope.VideoDecoder) return globalThis.isSecureContext === false ? "needs https or localhost" : "not in this browser";
   try {
-    const { supported } = await scope.VideoDecoder.isConfigSupported({ codec: kTypicalCodec, optimizeForLatency: true });
+    const { supported } = await scope.VideoDecoder.isConfigSupported({ codec: kLargestCodec, optimizeForLatency: true });
     return supported ? "" : "not in this browser";
   } catch {
     return "not in this browser";
@@ -32,19 +35,20 @@ export class EncodingChoice {
   /** @type {string | null} why the browser can't; "": it can; null: not known yet */
   #obstacle = null;
   #offered = true;
-  #broken = false;
+  /** Why H.264 is not used though it could be; "": it is. Of this connection. */
+  #trouble = "";
   /** @type {FrameEncoding | null} */
   #told = null;
 
   /** @type {Listeners<FrameEncoding>} */
   changes = new Listeners();
-  /** @type {Listeners<void>} told when `why_not_h264` may have changed */
+  /** @type {Listeners<void>} told when anything that can be read here may have changed */
   updates = new Listeners();
 
   /** @param {EncodingWish} wish */
   choose(wish) {
     this.#wish = wish;
-    this.#broken = false; // who asks for it again has it tried again
+    this.#trouble = ""; // who asks for it again has it tried again
     this.#say();
   }
 
@@ -56,15 +60,36 @@ export class EncodingChoice {
 
   /** @param {Connection["state"]} state  the server tells what it has */
   follow({ hello }) {
-    if (!hello) return;
+    if (!hello) {
+      this.#trouble = ""; // the next may be another server, and another way to it
+      return;
+    }
     this.#offered = hello.capabilities.includes("frames:h264");
     this.#say();
   }
 
-  /** H.264 was tried and can't be used. */
-  give_up() {
-    this.#broken = true;
+  /**
+   * H.264 was tried and can't be used. Whoever has chosen it is given the choice again.
+   * @param {string} [why]  in a word or two
+   */
+  give_up(why = "H.264 failed") {
+    this.#wish = this.#wish === "h264" ? "auto" : this.#wish;
+    this.#trouble = why;
     this.#say();
+  }
+
+  /** The connection takes less than H.264 brings: JPEG adapts. Who has chosen H.264 keeps it. */
+  too_slow() {
+    if (this.#wish === "auto" && this.encoding === "h264") this.give_up("slow connection");
+  }
+
+  get wish() {
+    return this.#wish;
+  }
+
+  /** Why what is chosen automatically is not H.264, though nothing speaks against it; "": it is. */
+  get trouble() {
+    return this.#trouble;
   }
 
   /** "": nothing speaks against it. */
@@ -76,7 +101,7 @@ export class EncodingChoice {
   get encoding() {
     if (this.#wish === "jpeg") return "jpeg";
     if (this.#obstacle === null) return null;
-    return this.why_not_h264 || this.#broken ? "jpeg" : "h264";
+    return this.why_not_h264 || this.#trouble ? "jpeg" : "h264";
   }
 
   #say() {

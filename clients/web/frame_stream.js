@@ -16,6 +16,8 @@ const kQuality = 80;
 /** About 1280 × 720: beyond it, sharpness costs the server more than it gives the eye. */
 const kMostPixels = 1280 * 720;
 const kLeastSide = 16;
+/** Parameters of `stream.open` that an encoding may not be able to take. */
+const kOfEncoding = new Set(["params.encoding", "params.width", "params.height", "params.bitrate"]);
 
 /** @typedef {{width: number, height: number}} Size */
 /** @typedef {{encoding: FrameEncoding, codec: string} & Size} FrameLayout  what the pictures of a stream are */
@@ -33,6 +35,16 @@ export function stream_size(css_width, css_height, pixel_ratio) {
   /** @param {number} side */
   const even = (side) => Math.max(kLeastSide, 2 * Math.floor((side * scale) / 2));
   return { width: even(width), height: even(height) };
+}
+
+/**
+ * Whether an error says that there is no such encoding, here or of such pictures; not that there is no scene, or no more room.
+ * @param {unknown} error
+ * @returns {error is RpcError}
+ */
+function refuses_encoding(error) {
+  if (!(error instanceof RpcError)) return false;
+  return error.kind === "unavailable" || (error.kind === "invalid_params" && kOfEncoding.has(error.path));
 }
 
 export class FrameStream {
@@ -55,6 +67,8 @@ export class FrameStream {
 
   /** @type {Listeners<FrameLayout>} told before the first packet of each stream */
   opened = new Listeners();
+  /** @type {Listeners<void>} told when nobody looks any more */
+  closed = new Listeners();
   /** @type {Listeners<Packet>} */
   packets = new Listeners();
   /** @type {Listeners<RpcError>} H.264 was asked for and refused */
@@ -163,8 +177,11 @@ export class FrameStream {
     const { stream, layout } = opened;
     const before = this.#open;
     this.#open = { stream, encoding, size, camera };
-    this.opened.tell({ encoding, codec: layout.codec, ...size });
-    if (before) await this.#connection.call("stream.close", { stream: before.stream }); // no gap: the new one is there
+    try {
+      this.opened.tell({ encoding, codec: layout.codec, ...size });
+    } finally {
+      if (before) await this.#connection.call("stream.close", { stream: before.stream }); // no gap: the new one is there
+    }
   }
 
   /**
@@ -185,7 +202,7 @@ export class FrameStream {
         ...(camera ? { camera } : {}),
       });
     } catch (error) {
-      if (encoding === "h264" && error instanceof RpcError) this.refusals.tell(error);
+      if (encoding === "h264" && refuses_encoding(error)) this.refusals.tell(error);
       if (encoding === this.#encoding) throw error;
       return null;
     }
@@ -201,6 +218,7 @@ export class FrameStream {
   /** @param {number} stream */
   async #close(stream) {
     this.#open = null;
+    this.closed.tell();
     await this.#connection.call("stream.close", { stream });
   }
 

@@ -87,8 +87,7 @@ export class FrameView {
    * @param {FrameLayout} layout
    */
   begin(layout) {
-    this.#decoder?.close();
-    this.#decoder = null;
+    this.end();
     /** @type {PictureSink} */
     const sink = {
       show: (image, packet) => this.#show(image, packet, layout),
@@ -96,7 +95,17 @@ export class FrameView {
       fail: (error) => this.failures.tell(error),
       report: this.#report,
     };
-    this.#decoder = layout.encoding === "h264" ? new UnitDecoder(layout.codec, sink) : new StillDecoder(sink);
+    try {
+      this.#decoder = layout.encoding === "h264" ? new UnitDecoder(layout.codec, sink) : new StillDecoder(sink);
+    } catch (error) {
+      this.failures.tell(error); // there is no such decoder, though there seemed to be
+    }
+  }
+
+  /** Lets go of the stream's decoder, of which a device may have few; the last picture stays. */
+  end() {
+    this.#decoder?.close();
+    this.#decoder = null;
   }
 
   /** @param {Packet} packet */

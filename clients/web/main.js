@@ -22,6 +22,7 @@ import { EncodingChoice, obstacle_to_h264 } from "./encoding_choice.js";
 import { FrameMeter } from "./frame_meter.js";
 import { FrameStream } from "./frame_stream.js";
 import { FrameView } from "./frame_view.js";
+import { GapWatch } from "./gap_watch.js";
 import { listen_to_gestures } from "./gestures.js";
 import { StageSession } from "./stage_session.js";
 import { StageStore } from "./stage_state.js";
@@ -44,13 +45,18 @@ const session = new StageSession(connection, store, clock, report);
 const actions = make_actions(connection, store, report);
 const camera = new ViewCamera();
 const meter = new FrameMeter();
+const gaps = new GapWatch();
 const canvas = element("picture", HTMLCanvasElement);
 const view = new FrameView(canvas, report);
 
 /** @type {Drawn | null} */
 let last_drawn = null;
 
-stream.opened.add((layout) => view.begin(layout));
+stream.opened.add((layout) => {
+  gaps.begin();
+  view.begin(layout);
+});
+stream.closed.add(() => view.end());
 stream.packets.add((packet) => {
   store.dispatch({
     type: "reading",
@@ -61,6 +67,7 @@ stream.packets.add((packet) => {
   });
   meter.receive(performance.now(), packet.payload.length);
   view.push(packet);
+  if (gaps.receive(performance.now(), packet.sequence)) encodings.too_slow();
 });
 view.drawn.add((drawn) => {
   last_drawn = drawn;

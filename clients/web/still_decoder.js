@@ -43,14 +43,24 @@ export class StillDecoder {
     while (this.#waiting) {
       const packet = this.#waiting;
       this.#waiting = null;
-      try {
-        const bitmap = await this.#decode_image(new Blob([packet.payload], { type: image_type(packet) }));
-        if (this.#closed) bitmap.close();
-        else this.#sink.show(bitmap, packet);
-      } catch (error) {
-        this.#sink.report(new Error(`the picture can't be decoded: ${error instanceof Error ? error.message : error}`));
-      }
+      const bitmap = await this.#decode(packet);
+      if (this.#closed) bitmap?.close();
+      else if (bitmap) this.#sink.show(bitmap, packet);
     }
     this.#busy = false;
+  }
+
+  /**
+   * @param {Packet} packet
+   * @returns {Promise<ImageBitmap | null>} null: it is none, which has been reported
+   */
+  async #decode(packet) {
+    try {
+      return await this.#decode_image(new Blob([packet.payload], { type: image_type(packet) }));
+    } catch (error) {
+      const why = error instanceof Error ? error.message : error;
+      if (!this.#closed) this.#sink.report(new Error(`the picture can't be decoded: ${why}`));
+      return null;
+    }
   }
 }

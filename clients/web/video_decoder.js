@@ -10,6 +10,8 @@ import { kEncodingH264, kKindFrame, PacketError } from "./packet.js";
 
 /** Units that the decoder has not begun. More of them, and it is slower than the stream: what waits is of the past. */
 const kMostQueued = 8;
+/** Some decoders take half a second before they begin. One that has put nothing out for so long, by the stream's time, never will. */
+const kLongestStart_us = 5_000_000;
 
 /** @typedef {(init: VideoDecoderInit) => VideoDecoder} MakeDecoder */
 
@@ -24,6 +26,10 @@ export class UnitDecoder {
   #waits_for_key = true;
   /** @type {number | null} of the last unit handed over */
   #sequence = null;
+  /** This decoder has put something out: before that it may be starting, and being full is no trouble. */
+  #started = false;
+  /** @type {number | null} server_us of the first unit handed to this decoder */
+  #first_us = null;
   /** Something went wrong, and no picture has come since. */
   #troubled = false;
   #closed = false;
@@ -49,11 +55,12 @@ export class UnitDecoder {
       throw new PacketError(`expected a frame as h264, found kind ${packet.kind}, encoding ${packet.encoding}`);
     }
     if (this.#closed) return;
-    if (packet.key) this.#take_key();
-    else if (this.#waits_for_key) return;
-    else if (packet.sequence !== next(this.#sequence)) return this.#wait_for_key();
-    else if (this.#decoder.decodeQueueSize >= kMostQueued) return this.#trouble(new Error("the decoder is too slow"));
-    this.#hand_over(packet);
+    if (packet.key) return this.#take_key(packet);
+    if (this.#waits_for_key) return;
+    if (packet.sequence !== next(this.#sequence)) return this.#wait_for_key();
+    if (!this.#is_full) return this.#hand_over(packet);
+    if (this.#started) this.#trouble(new Error("the decoder is too slow"));
+    else this.#wait_for_key();
   }
 
   /** Nothing is shown after it. */
@@ -61,6 +68,10 @@ export class UnitDecoder {
     this.#closed = true;
     this.#handed.clear();
     if (this.#decoder.state !== "closed") this.#decoder.close();
+  }
+
+  get #is_full() {
+    return this.#decoder.decodeQueueSize >= kMostQueued;
   }
 
   #begin() {
@@ -74,20 +85,37 @@ export class UnitDecoder {
     return decoder;
   }
 
-  /** A key needs nothing of what came before it, so neither does what is late have to be decoded. */
-  #take_key() {
+  /**
+   * A key needs nothing of what came before it, so neither does what is late have to be decoded; but a decoder that is still
+   * starting would only have to start again.
+   * @param {Packet} packet
+   */
+  #take_key(packet) {
+    if (this.#is_full && !this.#started) {
+      if (packet.server_us - (this.#first_us ?? 0) < kLongestStart_us) return this.#wait_for_key();
+      return this.#end(new Error("the decoder does not begin"));
+    }
     this.#waits_for_key = false;
-    if (this.#decoder.decodeQueueSize >= kMostQueued) this.#renew();
+    if (this.#is_full) this.#renew();
+    this.#hand_over(packet);
   }
 
   #renew() {
     if (this.#decoder.state !== "closed") this.#decoder.close();
     this.#handed.clear();
-    this.#decoder = this.#begin();
+    this.#started = false;
+    this.#first_us = null;
+    try {
+      this.#decoder = this.#begin();
+    } catch (error) {
+      this.#end(error);
+    }
   }
 
   /** @param {Packet} packet */
   #hand_over(packet) {
+    if (this.#closed) return; // there was no decoder to be had
+    this.#first_us ??= packet.server_us;
     this.#sequence = packet.sequence;
     this.#handed.set(packet.server_us, packet);
     const { payload: data, server_us: timestamp } = packet;
@@ -101,6 +129,7 @@ export class UnitDecoder {
   /** @param {VideoFrame} frame */
   #decoded(frame) {
     this.#troubled = false;
+    this.#started = true;
     const packet = this.#handed.get(frame.timestamp);
     if (!packet) return frame.close();
     for (const timestamp of this.#handed.keys()) {
@@ -120,14 +149,16 @@ export class UnitDecoder {
    * @param {unknown} error
    */
   #trouble(error) {
-    if (this.#troubled) {
-      this.close();
-      this.#sink.fail(error);
-      return;
-    }
+    if (this.#troubled) return this.#end(error);
     this.#troubled = true;
     if (this.#decoder.state === "closed") this.#renew(); // an error has closed it
-    this.#wait_for_key();
+    if (!this.#closed) this.#wait_for_key();
+  }
+
+  /** @param {unknown} error */
+  #end(error) {
+    this.close();
+    this.#sink.fail(error);
   }
 }
 

@@ -13,6 +13,7 @@ namespace tweend::streams {
 namespace {
 
 bool is_key(const Packet& packet) noexcept { return (packet.header.flags & protocol::kFlagKey) != 0; }
+bool jumped(const Packet& packet) noexcept { return (packet.header.flags & protocol::kFlagDiscontinuity) != 0; }
 
 /// What an encoder has made of a packet.
 void finish(Packet& packet, protocol::Encoded encoded) noexcept {
@@ -114,8 +115,9 @@ void PoseContent::fill(const stage::ActorShow& show, model::Evaluator& evaluator
   packet.header.encoding = protocol::kPoseF32;
   if (encoding_ == PoseEncoding::F32) return;
   packet.header.encoding = protocol::kPoseQ16;
-  finish(packet, q16_.encode(out.first(out.size() - weights.size()), weights, is_key(packet),
-                             packet.payload.resize(protocol::PoseQ16Encoder::most_bytes(joints, weights.size()))));
+  finish(packet,
+         q16_.encode(out.first(out.size() - weights.size()), weights, is_key(packet),
+                     packet.payload.resize(protocol::PoseQ16Encoder::most_bytes(joints, weights.size())), jumped(packet)));
 }
 
 }  // namespace tweend::streams

@@ -70,6 +70,18 @@ class Encodings(harness.TestCase):
         packet = late.packet(again)
         self.assertEqual((packet.payload, packet.server_us), (last.payload, last.server_us))
 
+    def test_a_seek_does_not_make_the_steps_of_q16_poses_coarse(self):
+        self.c.call("actor.add", actor="arm", skeleton=ARM)
+        for x in (1, 1001):
+            self.c.call("keyframe.add", actor="arm", pose={"root": {"translation": [x, 0, 0]}})
+        stream = self.c.call("stream.open", kind="pose", encoding="q16")["stream"]
+        for t, x in ((0, 1), (1, 1001), (0, 1)):
+            self.c.call("playback.seek", time=t)
+            packet = self.c.packet_where(lambda p: p.media_us == t * 1e6, stream)
+            sections, of_joints, *base, exponent = struct.unpack_from("<BB3fb", packet.payload)
+            self.assertEqual((sections & 1, of_joints & 1, base), (1, 1, [x, 0, 0]))
+            self.assertEqual(exponent, -17, "what it was at rest")
+
     def test_whoever_joins_a_moving_stream_begins_with_a_key(self):
         self.add_arm()
         self.c.call("playback.play", speed=0.01)

@@ -1,5 +1,3 @@
-#include <vector>
-
 #include "protocol/vertices_meshopt.hpp"
 #include "protocol/vertices_q16.hpp"
 #include "tests/fuzz/packet_stream.hpp"
@@ -9,19 +7,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace tweend;
   fuzz::PacketStream stream(data, size);
   const std::size_t vertices = stream.number(700);
-  protocol::VerticesMeshoptDecoder decoder;
+  protocol::VerticesMeshoptDecoder decoder, of_read_alone;
   fuzz::PacketStream::Packet packet;
   while (stream.next(packet)) {
-    constexpr float kUntouched = -7.0F;
-    for (const bool as_meshopt : {true, false}) {
-      std::vector<float> positions(3 * vertices, kUntouched);
-      std::vector<float> normals(3 * vertices, kUntouched);
-      const bool were_read = (as_meshopt ? decoder.decode(packet.payload, packet.key, positions, normals)
-                                         : protocol::decode_vertices_q16(packet.payload, positions, normals))
-                                 .has_value();
-      fuzz::require_floats(positions, were_read, kUntouched);
-      fuzz::require_floats(normals, were_read, kUntouched);
-    }
+    const std::size_t coordinates = 3 * (vertices + packet.variant);
+    fuzz::Floats floats(coordinates, coordinates);
+    fuzz::read_or_refuse(decoder, of_read_alone, packet, floats);
+    fuzz::require_numbers(floats, protocol::decode_vertices_q16(packet.payload, floats.a, floats.b).has_value());
   }
   return 0;
 }

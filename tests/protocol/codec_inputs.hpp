@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <span>
@@ -84,6 +86,38 @@ struct Vertices {
     }
   }
   return out;
+}
+
+/// With every kind of number that a float can be.
+[[nodiscard]] inline Vertices odd_vertices(std::size_t n, std::uint32_t seed) {
+  using Limits = std::numeric_limits<float>;
+  constexpr std::array kOdd{Limits::infinity(),
+                            -Limits::infinity(),
+                            Limits::quiet_NaN(),
+                            Limits::max(),
+                            -Limits::max(),
+                            1e38F,  // of which three are no float
+                            -0.0F,
+                            Limits::denorm_min(),
+                            1.0F};
+  std::mt19937 random(seed);
+  Vertices out;
+  for (std::size_t i = 0; i < 3 * n; ++i) {
+    out.positions.push_back(kOdd[random() % kOdd.size()]);
+    out.normals.push_back(i % 3 == 0 && random() % 2 == 0 ? 0.5F : kOdd[random() % kOdd.size()]);
+  }
+  return out;
+}
+
+/// What docs/PROTOCOL.md says is sent of such numbers.
+[[nodiscard]] inline Vertices tamed(Vertices v) {
+  constexpr float kHalfOfMost = 1.7014117e38F;
+  for (float& x : v.positions) x = std::isnan(x) ? 0.0F : std::clamp(x, -kHalfOfMost, kHalfOfMost);
+  for (std::size_t i = 0; i < v.normals.size(); i += 3) {
+    const float sum = std::abs(v.normals[i]) + std::abs(v.normals[i + 1]) + std::abs(v.normals[i + 2]);
+    if (!std::isfinite(sum) || sum < 1e-18F) std::fill_n(&v.normals[i], 3, 0.0F);
+  }
+  return v;
 }
 
 }  // namespace tweend::protocol

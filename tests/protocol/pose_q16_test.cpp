@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "tests/protocol/codec_inputs.hpp"
@@ -19,9 +21,9 @@ struct Stream {
     std::vector<std::byte> payload;
     bool key;
   };
-  Sent write(const Pose& pose, bool asked = false) {
+  Sent write(const Pose& pose, bool asked = false, bool jumped = false) {
     std::vector<std::byte> out(PoseQ16Encoder::most_bytes(pose.joints.size() / 10, pose.weights.size()));
-    const Encoded encoded = encoder.encode(pose.joints, pose.weights, asked, out);
+    const Encoded encoded = encoder.encode(pose.joints, pose.weights, asked, out, jumped);
     EXPECT_LE(encoded.bytes, out.size());
     out.resize(encoded.bytes);
     return {out, encoded.key};
@@ -258,6 +260,83 @@ TEST(PoseQ16, StepsBecomeFinerWhereLittleMoves) {
   }
   constexpr double kMoved = 2e-3;
   EXPECT_LE(worst, 4 * kMoved / 32767);
+}
+
+TEST(PoseQ16, JumpsLeaveTheStepsOfWhatMovesLittle) {
+  Stream stream;
+  Noise noise(14);
+  Pose pose = resting_pose(1, 0);
+  float from = 0.0F;
+  for (int i = 0; i < 600; ++i) {
+    const bool jumped = i > 0 && i % 25 == 0;  // a clip that wraps, and a second has passed seldom
+    if (jumped) from = from == 0.0F ? 1024.0F : 0.0F;
+    pose.translation(0)[0] = from;
+    pose.translation(0)[1] = from + 0.125F + 0.1F * noise.next();
+    const auto sent = stream.write(pose, i % 60 == 0, jumped);
+    EXPECT_EQ(sent.key, i % 60 == 0 || jumped) << i;
+    constexpr double kFloatAt1024 = 1.0 / (1 << 14);
+    ASSERT_NEAR(stream.read(sent, pose).joints[1], pose.joints[1], 4 * 0.35 / 32767 + (from > 0 ? kFloatAt1024 : 0)) << i;
+  }
+}
+
+/// What docs/PROTOCOL.md allows, worked out from the values and from which packets are keys.
+TEST(PoseQ16, ErrorsAreWhatThePageSaysWhateverMoves) {
+  Stream stream;
+  Noise noise(21);
+  Pose pose = resting_pose(4, 0);
+  stream.send(pose);
+  std::array<double, 4> most{}, far{}, base{};
+  most.fill(std::ldexp(1.0, -18));
+  for (int i = 1; i < 3000; ++i) {
+    const bool asked = i % 40 == 0, jumped = i % 333 == 0;
+    for (std::size_t j = 0; j < 4; ++j) {
+      float& x = pose.translation(j)[0];
+      x = jumped ? 64.0F * noise.next() : x + std::ldexp(noise.next(), -5 * static_cast<int>(j) - (i / 500 % 2) * 6);
+      if (!jumped) far[j] = std::max(far[j], std::abs(x - base[j]));
+    }
+    PoseQ16Encoder unasked = stream.encoder;
+    std::vector<std::byte> room(PoseQ16Encoder::most_bytes(4, 0));
+    const bool left = !jumped && unasked.encode(pose.joints, {}, false, room).key;
+    const auto sent = stream.write(pose, asked, jumped);
+    ASSERT_EQ(sent.key, asked || jumped || left);
+    Pose out = stream.read(sent, pose);
+    for (std::size_t j = 0; j < 4; ++j) {
+      const float x = pose.translation(j)[0];
+      ASSERT_NEAR(out.translation(j)[0], x, sent.key ? 0.0 : most[j] + std::ldexp(std::abs(x), -24)) << i << ' ' << j;
+      if (!sent.key) continue;
+      if (far[j] > 0) most[j] = std::max({4 * far[j] / 32767, std::ldexp(1.0, -25), left ? most[j] : most[j] / 4});
+      far[j] = 0, base[j] = x;
+    }
+  }
+}
+
+TEST(PoseQ16, WhatIsNotFiniteIsSentAsWhatIs) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kMost = std::numeric_limits<float>::max();
+  constexpr std::array kOdd{kInfinity, -kInfinity, kNan, kMost, -kMost, 3e37F, 1e-40F, 0.1F};
+  Stream stream;
+  std::mt19937 random(3);
+  Pose pose = resting_pose(4, 3);
+  const auto near = [kMost](float value, float rest, float out) {
+    const float meant = std::isnan(value) ? rest : std::clamp(value, -kMost, kMost);
+    EXPECT_NEAR(out, meant, std::ldexp(1.0, 79));
+  };
+  for (int i = 0; i < 500; ++i) {
+    const auto change = [&](float& value) { value = random() % 4 == 0 ? kOdd[random() % kOdd.size()] : value; };
+    std::ranges::for_each(pose.joints, change);
+    std::ranges::for_each(pose.weights, change);
+    Pose out = stream.read(stream.write(pose, i % 9 == 0, i % 13 == 0), pose);
+    for (std::size_t j = 0; j < 4; ++j) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        near(pose.translation(j)[k], 0.0F, out.translation(j)[k]);
+        near(pose.scale(j)[k], 1.0F, out.scale(j)[k]);
+      }
+      EXPECT_EQ(std::vector(out.rotation(j).begin(), out.rotation(j).end()), (std::vector<float>{0, 0, 0, 1}));
+      pose.rotation(j)[3] = 2.0F;  // never of unit length
+    }
+    for (std::size_t w = 0; w < 3; ++w) near(pose.weights[w], 0.0F, out.weights[w]);
+  }
 }
 
 TEST(PoseQ16, ValuesAtTheEndsOfFloatAreKeysAndExact) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tests/protocol/codec_inputs.hpp"
@@ -118,6 +119,13 @@ TEST(VerticesMeshopt, WhatIsRefusedChangesNothing) {
   stream.send(wavy_sphere(20, 20, 0.1));
   const auto delta = stream.write(wavy_sphere(20, 20, 0.2));
   expect_refused(stream.decoder, std::span(delta.payload).first(40), false, 400, "expected");
+  // Nor does a key of another size, wherever it is found to be none.
+  const auto other = Stream().write(wavy_sphere(20, 30, 0));
+  for (const auto& [at, value] : {std::pair{std::size_t{3}, 0xFF}, {24, 0x33}, {27, 0x00}}) {
+    auto none = other.payload;
+    none[at] = static_cast<std::byte>(value);
+    expect_refused(stream.decoder, none, true, 600, "expected");
+  }
   const Vertices out = stream.read(delta, 400);
   expect_near_positions(wavy_sphere(20, 20, 0.2).positions, out.positions, stream.extent);
 }
@@ -143,6 +151,16 @@ TEST(VerticesMeshopt, DirectionsKeepTheStatedAngleAllOverTheSphere) {
   const double worst = worst_angle(in.normals, stream.read(stream.write(in), 500'000).normals);
   EXPECT_LE(worst, kShortNormalError);
   EXPECT_GE(worst, kShortNormalError / 2) << "the stated error could be smaller";
+}
+
+TEST(VerticesMeshopt, WhatIsTooFarAwayOrNotFiniteIsSentAsTheNearestThatIs) {
+  Stream stream;
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    const Vertices in = seed % 7 == 0 ? wavy_sphere(4, 10, seed) : odd_vertices(40, seed);
+    const Vertices out = stream.read(stream.write(in), 40), meant = tamed(in);
+    expect_near_positions(meant.positions, out.positions, stream.extent);
+    EXPECT_LE(worst_angle(meant.normals, out.normals), kShortNormalError);
+  }
 }
 
 TEST(VerticesMeshopt, NormalsThatAreNoneStayNoneAndComeBack) {

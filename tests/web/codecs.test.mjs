@@ -110,6 +110,18 @@ describe("packets that need another first", () => {
   });
 });
 
+test("vertices meshopt: a refused key of another size changes nothing", () => {
+  const { packets } = read_golden("vertices_meshopt.bin");
+  const decode = kCodecs["vertices meshopt"].decoder();
+  const room = room_for({ elements: 0, weights: 0, packets });
+  decode(packets[0].payload, true, ...room);
+  const [one, other] = [new Float32Array(3), new Float32Array(3)];
+  // A vertex: the byte of its block, and then none of meshoptimizer's.
+  refused(decode, new Uint8Array(40), true, [one, other], /meshoptimizer packs/);
+  decode(packets[1].payload, packets[1].key, ...room);
+  assert.deepEqual(Float32Array.from([...room[0], ...room[1]]), packets[1].out);
+});
+
 describe("poses that are none", () => {
   const decode = (bytes) => [kCodecs["pose q16"].decoder(), Uint8Array.from(bytes), true, [new Float32Array(30), new Float32Array(2)]];
   test("unknown sections", () => refused(...decode([16]), /below 16, found 16/));

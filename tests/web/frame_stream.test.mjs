@@ -82,6 +82,16 @@ describe("a stream", () => {
     assert.deepEqual([connection.calls[0].method, connection.calls[0].params], ["stream.close", { stream: 1 }]);
   });
 
+  test("whose pictures nobody can take does not keep the one before", async () => {
+    await open();
+    stream.opened.add(() => { throw new Error("no decoder"); });
+    stream.set_size({ width: 320, height: 180 });
+    await connection.answer(opened(2));
+    assert.deepEqual(connection.calls.map((c) => [c.method, c.params]), [["stream.close", { stream: 1 }]]);
+    await connection.answer();
+    assert.deepEqual(errors.map((e) => e.message), ["no decoder"]);
+  });
+
   test("has one camera update on its way, and the newest next", async () => {
     await open();
     for (const azimuth of [1, 2, 3]) stream.set_camera(camera(azimuth));
@@ -106,9 +116,11 @@ describe("a stream", () => {
   });
 
   test("is closed while nobody looks", async () => {
+    let closed = 0;
+    stream.closed.add(() => (closed += 1));
     await open();
     stream.set_watched(false);
-    assert.deepEqual(connection.asked, ["stream.close"]);
+    assert.deepEqual([connection.asked, closed], [["stream.close"], 1]);
     await connection.answer();
     stream.set_watched(true);
     assert.deepEqual(connection.asked, ["stream.open"]);
@@ -145,7 +157,8 @@ describe("a stream", () => {
 });
 
 describe("an encoding", () => {
-  const refusal = new RpcError("stream.open", { code: -32006, message: "no encoder" });
+  const refused = (kind, path) => new RpcError("stream.open", { code: -32000, message: "no", data: { kind, path } });
+  const refusal = refused("unavailable");
 
   test("has to be known before anything is asked for", () => {
     stream = new FrameStream(connection, "main", assert.fail);
@@ -189,6 +202,24 @@ describe("an encoding", () => {
     await settled();
     assert.deepEqual(connection.calls.map((c) => c.params.encoding), ["jpeg"]);
     assert.equal(errors.length, 1);
+  });
+
+  test("is not what was refused where there is no such scene, or no room", async () => {
+    const told = [];
+    stream.refusals.add((error) => told.push(error.path || error.kind));
+    stream.set_encoding("h264");
+    connection.become("open");
+    const answers = [
+      refused("not_found", "params.scene"), refused("limit"), refused("invalid_params", "params.scene"), new ConnectionLost("gone"),
+      refused("invalid_params", "params.encoding"), refused("invalid_params", "params.height"), refusal,
+    ];
+    for (const [i, answer] of answers.entries()) {
+      stream.set_size({ width: 320 + 2 * i, height: 180 });
+      connection.calls.shift().reject(answer);
+      await settled();
+    }
+    assert.deepEqual(told, ["params.encoding", "params.height", "unavailable"]);
+    assert.equal(errors.length, answers.length);
   });
 
   test("keys are asked for of the open stream", async () => {

@@ -50,4 +50,12 @@ describe("a decoder of stills", () => {
     assert.ok(late.closed);
     assert.deepEqual([shown, begun.length], [[], 1]);
   });
+
+  test("says nothing of it either", async () => {
+    decoder.push(packet(1));
+    decoder.close();
+    begun[0].reject(new Error("cut short"));
+    await settled();
+    assert.deepEqual(errors, []);
+  });
 });

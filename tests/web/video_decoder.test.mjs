@@ -10,12 +10,14 @@ globalThis.EncodedVideoChunk ??= class {
 
 /** A VideoDecoder that decodes when the test says so. */
 class FakeDecoder {
+  static refuses = false;
   state = "unconfigured";
   chunks = [];
   constructor(init) {
     this.init = init;
   }
   configure(config) {
+    if (FakeDecoder.refuses) throw new TypeError("no such codec");
     this.state = "configured";
     this.config = config;
   }
@@ -51,16 +53,18 @@ class FakeFrame {
   }
 }
 
+/** Of a stream of 50 a second. */
 const unit = (sequence, key = false) => ({
-  kind: 3, encoding: 2, key, sequence, server_us: 1000 * sequence, payload: new Uint8Array([0, 0, 0, 1]),
+  kind: 3, encoding: 2, key, sequence, server_us: 20_000 * sequence, payload: new Uint8Array([0, 0, 0, 1]),
 });
 
 let made, shown, keys, failures, decoder;
 const now = () => made.at(-1);
-const queued = () => now().chunks.map((c) => c.timestamp / 1000);
+const queued = () => now().chunks.map((c) => c.timestamp / 20_000);
 
 beforeEach(() => {
   [made, shown, keys, failures] = [[], [], 0, []];
+  FakeDecoder.refuses = false;
   const sink = {
     show: (image, packet) => shown.push([image, packet.sequence]),
     need_key: () => (keys += 1),
@@ -81,7 +85,7 @@ describe("a decoder of units", () => {
 
   test("begins with a key", () => {
     [unit(4), unit(5, true), unit(6)].forEach((u) => decoder.push(u));
-    assert.deepEqual(now().chunks.map((c) => [c.timestamp, c.type]), [[5000, "key"], [6000, "delta"]]);
+    assert.deepEqual(now().chunks.map((c) => [c.timestamp, c.type]), [[100_000, "key"], [120_000, "delta"]]);
     assert.equal(keys, 0, "the first comes by itself");
   });
 
@@ -90,7 +94,7 @@ describe("a decoder of units", () => {
     now().chunks.shift(); // one that is never put out
     const frame = now().put_out();
     assert.deepEqual(shown, [[frame, 6]]);
-    assert.ok(now().put_out(new FakeFrame(5000)).closed, "5 was given up");
+    assert.ok(now().put_out(new FakeFrame(100_000)).closed, "5 was given up");
     now().put_out();
     assert.deepEqual(shown.map(([, sequence]) => sequence), [6, 7]);
   });
@@ -111,6 +115,7 @@ describe("a decoder of units", () => {
 
   test("has a bounded queue: the rest is dropped up to a key, which sweeps it away", () => {
     decoder.push(unit(0, true));
+    now().put_out();
     for (let i = 1; i < 30; ++i) decoder.push(unit(i));
     const full = queued().length;
     assert.ok(full < 10);
@@ -120,6 +125,40 @@ describe("a decoder of units", () => {
     assert.equal(before.state, "closed");
     assert.deepEqual(queued(), [30]);
     assert.deepEqual(failures, []);
+  });
+
+  test("waits for a decoder that is slow to start, with the same one", () => {
+    decoder.push(unit(0, true));
+    for (let i = 1; i < 100; ++i) decoder.push(unit(i, i % 12 === 0)); // two seconds
+    assert.deepEqual([made.length, failures], [1, []]);
+    assert.ok(queued().length < 10 && keys > 0);
+    while (queued().length > 0) now().put_out();
+    [unit(100, true), unit(101)].forEach((u) => decoder.push(u));
+    now().put_out();
+    assert.deepEqual([queued(), shown.at(-1)[1]], [[101], 100]);
+  });
+
+  test("gives up one that never starts", () => {
+    for (let i = 0; i < 50 * 10 && failures.length === 0; ++i) decoder.push(unit(i, i % 12 === 0));
+    assert.deepEqual([made.length, failures], [1, ["the decoder does not begin"]]);
+    assert.equal(now().state, "closed");
+  });
+
+  test("grants time to start to one that takes another's place, too", () => {
+    decoder.push(unit(0, true));
+    now().put_out();
+    for (let i = 1; i < 10; ++i) decoder.push(unit(i));
+    for (let i = 10; i < 100; ++i) decoder.push(unit(i, i % 12 === 0));
+    assert.deepEqual([made.length, failures], [2, []]);
+  });
+
+  test("fails where there is no decoder for what it was told", () => {
+    FakeDecoder.refuses = true;
+    assert.throws(() => new UnitDecoder("avc1", {}, (init) => new FakeDecoder(init)), /no such codec/);
+    decoder.push(unit(0, true));
+    now().fail(new Error("first"));
+    assert.deepEqual([failures, keys], [["no such codec"], 0]);
+    decoder.push(unit(1, true)); // goes nowhere
   });
 
   test("lets a first error pass with a new key, the second without a picture between ends it", () => {

@@ -53,9 +53,9 @@ export class VerticesMeshoptDecoder {
     );
     const foretellings = payload.subarray(first, first + blocks);
     check_foretellings(foretellings, key);
-    if (key) this.#make_room(vertices);
     this.#unpack(payload.subarray(first + blocks), vertices);
     if (key) read_grid(new DataView(payload.buffer, payload.byteOffset, payload.byteLength), this.#grid);
+    this.#make_room(vertices); // nothing is refused from here on
     for (let block = 0; block < blocks; block++) {
       const nibbles = foretellings[block] ?? 0;
       const begin = block * kBlockVertices;
@@ -70,8 +70,6 @@ export class VerticesMeshoptDecoder {
   #make_room(vertices) {
     if (vertices === this.#vertices) return;
     this.#vertices = vertices;
-    this.#is_known = false;
-    this.#residuals = new Uint8Array(vertices * kStride);
     this.#now = new Uint16Array(kPlanes * vertices);
     this.#before = new Uint16Array(kPlanes * vertices);
     this.#earlier = new Uint16Array(kPlanes * vertices);
@@ -82,6 +80,7 @@ export class VerticesMeshoptDecoder {
    * @param {number} vertices
    */
   #unpack(packed, vertices) {
+    if (this.#residuals.length !== vertices * kStride) this.#residuals = new Uint8Array(vertices * kStride);
     let found = "bytes of another kind";
     try {
       if (vertices > 0) this.#meshopt.decodeVertexBuffer(this.#residuals, vertices, kStride, packed);

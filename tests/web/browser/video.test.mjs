@@ -48,6 +48,35 @@ const kBroken = `
     decode() { super.close(); queueMicrotask(() => this.#init.error(new Error("the decoder is broken"))); }
   };`;
 
+const kRefusing = `
+  const Whole = globalThis.VideoDecoder;
+  globalThis.VideoDecoder = class extends Whole {
+    configure() { throw new TypeError("no such codec"); }
+  };`;
+/** Counts the decoders that are open. */
+const kCounted = `
+  const Whole = globalThis.VideoDecoder;
+  globalThis.open_decoders = 0;
+  globalThis.VideoDecoder = class extends Whole {
+    constructor(init) { super(init); globalThis.open_decoders += 1; }
+    close() { super.close(); globalThis.open_decoders -= 1; }
+  };`;
+/** The next of the stream's packets seem to come behind others that were skipped. */
+const kLossy = `
+  const Whole = globalThis.WebSocket;
+  globalThis.WebSocket = class extends Whole {
+    #lost = 0;
+    set onmessage(listener) {
+      super.onmessage = (event) => {
+        if (typeof event.data !== "string") {
+          const header = new DataView(event.data);
+          if (header.getUint8(6) === 2) header.setUint32(12, header.getUint32(12, true) + (this.#lost += 1), true);
+        }
+        listener(event);
+      };
+    }
+  };`;
+
 for (const [name, options] of Object.entries({ desk: kDesk, phone: kPhone })) {
   describe(`H.264 at ${name} size`, () => {
     let page;
@@ -122,6 +151,44 @@ describe("the choice of encoding", () => {
     await page.ready();
     await page.says("#meter", /^\d+ fps · .* · JPEG · /);
     assert.equal(calls.count, 1);
+    await page.close();
+  });
+
+  test("is JPEG where there is no decoder after all, and H.264 can be asked for again", async () => {
+    const page = await TweendPage.open(browser, server.url, kDesk, (p) => p.addInitScript(kRefusing));
+    await page.says("#message_text", /H\.264 can't be played, so JPEG is: no such codec/);
+    await page.ready();
+    await page.says("#encoding_auto", "Auto: JPEG (H.264 failed)");
+    const picker = page.page.locator("#encoding");
+    await picker.selectOption("h264");
+    await until("the picker shows what is so", async () => (await picker.inputValue()) === "auto");
+    await page.says("#meter", /^\d+ fps · .* · JPEG · /);
+    await page.close();
+  });
+
+  test("is JPEG where the connection is too slow for H.264, until H.264 is chosen", async () => {
+    const page = await TweendPage.open(browser, server.url, kDesk, (p) => p.addInitScript(kLossy));
+    await page.says("#meter", /^\d+ fps · .* · JPEG · /);
+    await page.says("#encoding_auto", "Auto: JPEG (slow connection)");
+    await page.says("#message_text", "");
+    await page.ready();
+    await page.page.locator("#encoding").selectOption("h264");
+    await page.says("#encoding_auto", "Auto");
+    await page.close();
+  });
+
+  test("costs no decoder while nobody looks", async () => {
+    const page = await TweendPage.open(browser, server.url, kDesk, (p) => p.addInitScript(kCounted));
+    await page.says("#meter", /^\d+ fps · .* · H\.264 · /);
+    const become = (state) =>
+      page.page.evaluate((value) => {
+        Object.defineProperty(document, "visibilityState", { value, configurable: true });
+        document.dispatchEvent(new Event("visibilitychange"));
+      }, state);
+    for (const [state, decoders] of [["hidden", 0], ["visible", 1]]) {
+      await become(state);
+      await until(`there are ${decoders} decoders`, async () => (await page.page.evaluate("open_decoders")) === decoders);
+    }
     await page.close();
   });
 });
