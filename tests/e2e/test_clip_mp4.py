@@ -94,7 +94,7 @@ class Clip(pictures.PictureCase):
         for query in ("from=-1", "to=-1", "fps=0", "fps=1e-13", "fps=1000", "from=x", "nope=1", "from=1&from=2", "scene=main"):
             self.refuses(400, query, "params." + query.split("=")[0])
         self.refuses(400, "from=1.5&to=1", "params.to")
-        self.refuses(400, "from=3", "params.from")
+        self.refuses(400, "from=3", "params.from: expected a time up to 2", "found 3")
         self.refuses(400, SMALL + "&to=1000&fps=240", "18000", "240000")
         self.refuses(400, SMALL + "&to=1e300", "18000")
         self.refuses(503, SMALL, server=self.undrawing())
@@ -140,6 +140,17 @@ class Clip(pictures.PictureCase):
                     client.sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, linger))
                 client.close()
             self.assertEqual(len(self.film(SMALL + "&to=0.1").times), 3)
+
+    def test_a_crowd_is_told_to_come_back(self):
+        clients = [self.waiting() for _ in range(65)]  # one under way, 64 behind it
+        status, headers, body = self.server.http("GET", f"/scenes/main/clip.mp4?{SMALL}")
+        self.assertEqual((status, headers["retry-after"]), (503, "10"))
+        self.assertIn(b"at most 64 films", body)
+        for client in clients:
+            client.sock.shutdown(socket.SHUT_WR)
+        for client in clients:
+            self.assertEqual(client.read_answer()[0], 503)
+        self.assertEqual(len(self.film(SMALL + "&to=0.1").times), 3)
 
     def test_a_client_that_asks_for_more_meanwhile_is_still_there(self):
         first, client = self.waiting(), self.waiting(SMALL)
