@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <libyuv/convert.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -31,6 +32,10 @@ Status check(const H264Options& o) {
                 fmt::format("expected even sides of a picture in H.264, found {} x {} pixels; one pixel "
                             "more or less will do",
                             size.width, size.height));
+  }
+  if (std::max(size.width, size.height) > kH264MostPixels) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected sides of at most {} pixels in H.264, found {} x {}",
+                                                      kH264MostPixels, size.width, size.height));
   }
   if (!std::isfinite(o.rate) || o.rate <= 0.0)
     return fail(ErrorCode::InvalidParams, fmt::format("expected a rate above 0, found {}", o.rate));

@@ -18,6 +18,9 @@ struct H264Level {
 /// decodes today does that, and lower ones allow less than 10 Mbit/s.
 [[nodiscard]] const H264Level& h264_level(Size size, double rate) noexcept;
 
+/// How long a side x264 takes.
+inline constexpr std::uint32_t kH264MostPixels = 16'384;
+
 /// Pictures a second that a limit of bits reckons with: keys that are asked for come up to four times a second.
 [[nodiscard]] constexpr double h264_paced(double rate) noexcept { return rate < 4.0 ? 4.0 : rate; }
 

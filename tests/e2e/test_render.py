@@ -104,6 +104,7 @@ class Films(Rendering):
         self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL, "--closed", "--duration", 2.5).times), 75)
         self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL, "--sequence-fps", 48, "--fps", 10).times), 10)
         self.assertEqual(len(self.film(f"{self.root}/cup.obj", *SMALL).times), 1)
+        self.assertIn(" 1 picture at 30 ", self.render(f"{self.root}/cup.obj", *SMALL, "--mp4", "a.mp4"))
 
     def test_it_shows_what_pictures_of_its_times_show(self):
         film = self.film(f"{self.root}/wave", *SMALL, "--from", 0.5, "--to", 1.5, "--fps", 10)
@@ -124,14 +125,18 @@ class Films(Rendering):
             self.assertEqual(len(film.times), 24)
         os.remove(f"{self.out}/a.mp4")
         self.refuses(f"{self.folder()}/none.json", "--mp4", "a.mp4", says=("none.json",))
-        self.refuses(f"{folder}/scene.json", "--mp4", "a.mp4", says=("wave",))
+        self.refuses(f"{folder}/scene.json", "--mp4", "a.mp4", says=("scene.json: edits[0].params.asset: ", "wave"))
+        self.refuses(f"{folder}/scene.json", f"{self.root}/wave", "--mp4", "a.mp4", says=("file of edits alone", "scene.json"))
         self.refuses(f"{folder}/scene.json", "--closed", says=("--closed",))
 
     def test_refusals(self):
         wave = f"{self.root}/wave"
         self.refuses(wave, "--mp4", "a.avi", says=(".mp4", "a.avi"))
         self.refuses(wave, "--mp4", "a.mp4", "--size", "63x48", says=("63x48", "even"))
-        self.refuses(wave, "--mp4", "a.mp4", "--fps", 1e-13, says=("--fps", "0.001", "1e-13"))
+        for fps in ("1e-13", "241", "1000000000"):
+            self.refuses(wave, "--mp4", "a.mp4", "--fps", fps, says=("--fps", "0.001 to 240", fps))
+        self.refuses(wave, "--mp4", "a.mp4", "--size", "16386x2", says=("16384", "16386x2"))
+        self.assertLess(len(self.refuses(wave, "--mp4", "a.mp4", "--to", "1e300", says=("89478314", "ask for part"))), 200)
         self.refuses(wave, "--mp4", "a.mp4", "--from", 3, says=("--from", "2"))
         self.refuses(wave, "--mp4", "a.mp4", "--from", 1, "--to", 0.5, says=("--to",))
         self.refuses(wave, "--mp4", "none/a.mp4", says=("none/a.mp4", "No such file", "make the folder none"))

@@ -63,8 +63,8 @@ std::vector<int> types_of(const std::vector<std::byte>& bytes) {
   return types;
 }
 
-TEST(H264Encoder, RefusesOddSidesAndNoPixels) {
-  for (const Size size : {Size{191, 108}, Size{192, 107}, Size{0, 108}, Size{192, 0}}) {
+TEST(H264Encoder, RefusesOddSidesNoPixelsAndTooMany) {
+  for (const Size size : {Size{191, 108}, Size{192, 107}, Size{0, 108}, Size{192, 0}, Size{16'386, 16}, Size{16, 16'386}}) {
     const auto none = H264Encoder::open({.size = size});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, ErrorCode::InvalidParams);
