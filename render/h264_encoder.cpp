@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <libyuv/convert.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -32,9 +33,19 @@ Status check(const H264Options& o) {
                             "more or less will do",
                             size.width, size.height));
   }
-  if (std::isfinite(o.rate) && o.rate > 0.0 && o.bit_rate >= 0) return {};
-  return fail(ErrorCode::InvalidParams,
-              fmt::format("expected a rate above 0 and a bit rate from 0 on, found {} and {}", o.rate, o.bit_rate));
+  if (std::max(size.width, size.height) > kH264MostPixels) {
+    return fail(ErrorCode::InvalidParams, fmt::format("expected sides of at most {} pixels in H.264, found {} x {}",
+                                                      kH264MostPixels, size.width, size.height));
+  }
+  if (!std::isfinite(o.rate) || o.rate <= 0.0)
+    return fail(ErrorCode::InvalidParams, fmt::format("expected a rate above 0, found {}", o.rate));
+  if (o.bit_rate == 0) return {};
+  if (const std::int64_t least = h264_least(size, o.rate).bit_rate; o.bit_rate < least) {
+    return fail(ErrorCode::InvalidParams,
+                fmt::format("expected at least {} bits a second for {} x {} pixels, found {}; ask for smaller pictures", least,
+                            size.width, size.height, o.bit_rate));
+  }
+  return {};
 }
 
 void set_picture(const H264Options& o, AVCodecContext& context) {
@@ -55,11 +66,20 @@ void set_picture(const H264Options& o, AVCodecContext& context) {
 void set_bits(const H264Options& o, AVCodecContext& context) {
   // Also without a limit of the caller's there is the level's, which the bitstream says is kept.
   const H264Level& level = h264_level(o.size, o.rate);
-  const auto most = static_cast<double>(o.bit_rate == 0 ? level.bit_rate : std::min(o.bit_rate, level.bit_rate));
-  const double even = o.bit_rate == 0 ? most : kEven * most;
   context.level = level.idc;
-  context.rc_max_rate = std::llround(even);
-  context.rc_buffer_size = static_cast<int>(std::llround(o.bit_rate == 0 ? most : most - even));
+  if (o.bit_rate == 0) {
+    context.rc_max_rate = level.bit_rate;
+    context.rc_buffer_size = static_cast<int>(level.bit_rate);
+    return;
+  }
+  // x264 forgets what its coarsest pictures take too much: that is set aside. The rest flows by the picture and not by the
+  // clock, and a second may have one picture more than its rate. Fewer than four a second need more room than a second has.
+  const double rate = h264_paced(o.rate);
+  const auto shared = static_cast<double>(std::min(o.bit_rate, level.bit_rate) - h264_least(o.size, o.rate).bits_s);
+  context.framerate = av_d2q(rate, 1 << 16);
+  context.time_base = av_inv_q(context.framerate);
+  context.rc_max_rate = std::llround(kEven * shared * rate / (rate + 1.0));
+  context.rc_buffer_size = static_cast<int>(std::llround(shared - kEven * shared));
 }
 
 int set_coding(const H264Options& o, AVCodecContext& context) {

@@ -15,9 +15,10 @@ namespace tweend::render {
 [[nodiscard]] bool has_h264() noexcept;
 
 struct H264Options {
-  Size size;                  ///< even sides
-  double rate = 30.0;         ///< pictures a second that are to be expected
-  std::int64_t bit_rate = 0;  ///< what no second takes more bits than; 0: as many as a constant quality takes
+  Size size;           ///< even sides
+  double rate = 30.0;  ///< pictures a second that are to be expected
+  /// What no second takes more bits than, as h264_least() counts its pictures; 0: as many as a constant quality takes.
+  std::int64_t bit_rate = 0;
   /// For a stream: fast, Constrained Baseline, parameter sets within each IDR picture's unit. Else for a file: High profile,
   /// better packed, parameter sets apart.
   bool live = true;
@@ -28,8 +29,8 @@ struct H264Options {
 /// transfer; the bitstream says so. Not for the network thread; one thread at a time.
 class H264Encoder {
  public:
-  /// @return InvalidParams for odd sides or a rate that is none, Unavailable where the build has no H.264 or with the
-  /// library's reason
+  /// @return InvalidParams for odd sides, a rate that is none or a bit rate below h264_least(), Unavailable where the build has
+  /// no H.264 or with the library's reason
   [[nodiscard]] static Result<H264Encoder> open(const H264Options& options);
   ~H264Encoder();
   H264Encoder(H264Encoder&&) noexcept;

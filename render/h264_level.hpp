@@ -18,4 +18,18 @@ struct H264Level {
 /// decodes today does that, and lower ones allow less than 10 Mbit/s.
 [[nodiscard]] const H264Level& h264_level(Size size, double rate) noexcept;
 
+/// How long a side x264 takes.
+inline constexpr std::uint32_t kH264MostPixels = 16'384;
+
+/// Pictures a second that a limit of bits reckons with: keys that are asked for come up to four times a second.
+[[nodiscard]] constexpr double h264_paced(double rate) noexcept { return rate < 4.0 ? 4.0 : rate; }
+
+/// The coarsest pictures there are, as x264 writes them whatever they show. A second has five keys at most, and one picture
+/// more than its rate, beside those that are keys because what is shown has jumped.
+struct H264Least {
+  std::int64_t bits_s;    ///< of a second of nothing but these
+  std::int64_t bit_rate;  ///< what a limit has to be at least, so that something is left to do better with
+};
+[[nodiscard]] H264Least h264_least(Size size, double rate) noexcept;
+
 }  // namespace tweend::render

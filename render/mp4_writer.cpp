@@ -19,10 +19,19 @@ namespace {
 
 constexpr double kKeyEveryS = 2.0;
 constexpr int kBufferBytes = 64 << 10;
-/// Of the index: what each picture takes at most (its length, place and whether it is a key), and all the rest.
-constexpr std::size_t kIndexBytesEach = 24, kIndexBytes = 4096;
 /// Finer than any rate that is meant: what lies between two such is taken for the simpler one.
 constexpr int kFinest = 1'000'000;
+
+Status check(const Mp4Options& o) {
+  // NaN, too.
+  if (!(o.fps >= 1.0 / kFinest && o.fps <= kFinest)) {
+    return fail(ErrorCode::InvalidParams,
+                fmt::format("expected {} to {} pictures a second, found {}", 1.0 / kFinest, kFinest, o.fps));
+  }
+  if (o.pictures.value_or(0) <= Mp4Writer::kMostPictures) return {};
+  return fail(ErrorCode::Limit,
+              fmt::format("expected a film of at most {} pictures, found {}", Mp4Writer::kMostPictures, *o.pictures));
+}
 
 /// The place in the file where FFmpeg writes next, and what went wrong there.
 struct Place {
@@ -122,6 +131,7 @@ int Mp4Writer::Impl::prepare(const Mp4Options& options) {
 }
 
 Result<Mp4Writer> Mp4Writer::open(const Mp4Options& options, FileSink& file) {
+  TWEEND_TRY(check(options));
   TWEEND_ASSIGN(H264Encoder encoder, H264Encoder::open({.size = options.size, .rate = options.fps, .live = false}));
   auto impl = std::make_unique<Impl>(std::move(encoder), file);
   impl->fps = av_d2q(options.fps, kFinest);

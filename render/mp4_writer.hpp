@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -22,8 +23,15 @@ struct Mp4Options {
 /// when it was made: the same pictures make the same file. Not for the network thread; one thread at a time.
 class Mp4Writer {
  public:
+  /// Of the index: what each picture takes at most (its length, place and whether it is a key), and all the rest.
+  static constexpr std::size_t kIndexBytesEach = 24, kIndexBytes = 4096;
+  /// So many pictures can be foretold: FFmpeg takes the index's bytes as an int.
+  static constexpr std::size_t kMostPictures =
+      (static_cast<std::size_t>(std::numeric_limits<int>::max()) - kIndexBytes) / kIndexBytesEach;
+
   /// @param file  outlives the writer; empty
-  /// @return InvalidParams, Unavailable as H264Encoder::open; Unavailable as the file says
+  /// @return InvalidParams, Unavailable as H264Encoder::open, and for a rate that is not between a picture in a million seconds
+  /// and a million a second; Limit for more pictures than kMostPictures; Unavailable as the file says
   [[nodiscard]] static Result<Mp4Writer> open(const Mp4Options& options, FileSink& file);
   ~Mp4Writer();
   Mp4Writer(Mp4Writer&&) noexcept;

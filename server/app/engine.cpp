@@ -30,9 +30,9 @@ Engine::Engine(const Limits& limits, std::vector<assets::AssetRoot> roots, const
       stage_(store_, limits_, metrics_),
       hub_(stage_, workers_, renderer_, deliver, metrics_),
       recorder_(stage_, film_workers_, renderer_, limits_),
-      films_(film_workers_, renderer_, limits_),
+      films_(std::make_shared<streams::FilmQueue>(film_workers_, renderer_, limits_)),
       events_(hub_, recorder_, deliver, metrics_),
-      services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_, stills_, recorder_, films_} {}
+      services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_, stills_, recorder_, *films_} {}
 
 Engine::~Engine() { stop(); }
 
@@ -44,7 +44,7 @@ Status Engine::start() {
 
 void Engine::stop() {
   if (!std::exchange(running_, false)) return;
-  films_.stop();
+  films_->stop();
   recorder_.finish_all();
   std::promise<void> quiet;
   stage_.post([&] {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -26,7 +27,7 @@ class Engine {
 
   [[nodiscard]] Status start();
   /// Answers who awaits a film that there will be none. Nobody is kept from asking: they are told the same.
-  void end_films() { films_.stop(); }
+  void end_films() { films_->stop(); }
   /// Commits what was accepted, makes files of what has been recorded, stops every thread. Nobody may ask for anything any
   /// more.
   void stop();
@@ -49,7 +50,7 @@ class Engine {
   stage::Stage stage_;
   streams::Hub hub_;
   streams::Recorder recorder_;
-  streams::FilmQueue films_;
+  const std::shared_ptr<streams::FilmQueue> films_;
   commands::EventHub events_;
   commands::Services services_;
 };

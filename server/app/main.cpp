@@ -1,3 +1,4 @@
+#include <csignal>
 #include <variant>
 
 #include "server/app/doctor.hpp"
@@ -19,4 +20,7 @@ struct Run {
 
 }  // namespace
 
-int main(int argc, char** argv) { return std::visit(Run(), parse_command_line(argc, argv)); }
+int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that gets too long tells by its error
+  return std::visit(Run(), parse_command_line(argc, argv));
+}

@@ -9,10 +9,11 @@
 namespace tweend::app {
 
 /// A file that a program is asked to write: it takes its name, also another file's, once it is whole. Where the file system
-/// can, it has none before, and nothing is left of it even if the process is killed.
+/// can, it has none before, and nothing is left of it even if the process is killed. A link that is there stays, and the file
+/// it names is written.
 class OutputFile final : public FileSink {
  public:
-  /// @return Unavailable naming it and the system's reason
+  /// @return Unavailable naming it and the system's reason, also where something else than a regular file is there
   [[nodiscard]] static Result<std::unique_ptr<OutputFile>> open(const std::string& path);
   ~OutputFile() override;
   OutputFile(const OutputFile&) = delete;

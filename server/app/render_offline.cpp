@@ -103,6 +103,16 @@ Status draw_all(const OfflineOptions& o, const OfflineScene& scene) {
   return o.mp4.empty() ? draw_pictures(o, scene) : render_film(o, scene);
 }
 
+/// What is wrong in a file of edits, which it is told as the parameters of `edit.apply`.
+Error in_file(const std::string& path, Error error) {
+  constexpr std::string_view kParams = "params.";
+  const std::string_view at = std::string_view(error.path).starts_with(kParams)
+                                  ? std::string_view(error.path).substr(kParams.size())
+                                  : std::string_view(error.path);
+  error.path = at.empty() ? path : fmt::format("{}: {}", path, at);
+  return error;
+}
+
 /// A file of edits: its assets are those of its folder, or of the one that was named.
 Status run_scene(const OfflineOptions& options) {
   const std::string& path = options.assets.front();
@@ -120,13 +130,20 @@ Status run_scene(const OfflineOptions& options) {
                 open_roots({options.assets_folder.empty() ? source.folder : options.assets_folder}));
   OfflineScene scene(options, std::move(roots));
   TWEEND_TRY(scene.start());
-  TWEEND_TRY(scene.show_edits(json));
+  if (const Status shown = scene.show_edits(json); !shown) return in_file(path, shown.error());
   return draw_all(options, scene);
 }
 
 Status run(const OfflineOptions& options) {
   TWEEND_TRY(check_output(options));
   if (options.is_scene()) return run_scene(options);
+  for (const std::string& path : options.assets) {
+    if (path.ends_with(".json")) {
+      return fail(ErrorCode::InvalidParams,
+                  fmt::format("expected a file of edits alone, found {} among {} assets; let it name the others", path,
+                              options.assets.size()));
+    }
+  }
   if (options.interpolation.size() > options.assets.size()) {
     return fail(ErrorCode::InvalidParams,
                 fmt::format("expected at most one --interpolation for each of {} asset{}, found {}", options.assets.size(),
@@ -158,7 +175,8 @@ Status run(const OfflineOptions& options) {
 int render_offline(const OfflineOptions& options) {
   const Status status = run(options);
   if (status) return 0;
-  std::cerr << "tweend: " << status.error().message << '\n';
+  const Error& error = status.error();
+  std::cerr << "tweend: " << error.path << (error.path.empty() ? "" : ": ") << error.message << '\n';
   return 1;
 }
 

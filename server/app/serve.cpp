@@ -35,7 +35,6 @@ sigset_t block_ending_signals() {
   sigaddset(&ending, SIGINT);
   pthread_sigmask(SIG_BLOCK, &ending, nullptr);
   std::signal(SIGPIPE, SIG_IGN);  // a socket tells by its error
-  std::signal(SIGXFSZ, SIG_IGN);  // and so does a file
   return ending;
 }
 

@@ -31,12 +31,14 @@ void render_frame(const FrameParams& p, const QueryContext& context, const Async
   Result<streams::StillRequest> request = still_request(p, context);
   if (!request) return done(request.error());
   FrameResult result{0.0, request->size.width, request->size.height, request->format, {}};
-  context.services.stills.render(std::move(*request), [result = std::move(result), done](Result<streams::Still> still) mutable {
-    if (!still) return done(still.error());
-    result.time = still->time_s;
-    protocol::append_base64(still->file, result.base64);
-    done(std::move(result));
-  });
+  const Status taken = context.services.stills.render(std::move(*request),
+                                                      [result = std::move(result), done](Result<streams::Still> still) mutable {
+                                                        if (!still) return done(still.error());
+                                                        result.time = still->time_s;
+                                                        protocol::append_base64(still->file, result.base64);
+                                                        done(std::move(result));
+                                                      });
+  if (!taken) done(taken.error());
 }
 
 Result<std::uint32_t> side(std::string_view name, std::uint64_t pixels, std::size_t most) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/h264_encoder.hpp"
+#include "render/h264_level.hpp"
 #include "server/commands/command_table.hpp"
 #include "server/commands/conversation.hpp"
 #include "server/commands/stream_types.hpp"
@@ -139,9 +140,23 @@ Error no_such_stream(std::uint64_t stream) {
               "params.stream");
 }
 
+/// @param path  what would have to be asked for otherwise
+Status check_bit_rate(const streams::FramesSpec& frames, double rate, const char* path) {
+  const std::int64_t least = render::h264_least(frames.size, rate).bit_rate;
+  if (frames.bit_rate == 0 || frames.bit_rate >= least) return {};
+  return fail(
+      ErrorCode::InvalidParams,
+      fmt::format("expected a bitrate of at least {} for {} x {} pixels {} times a second, found {}; ask for smaller or "
+                  "fewer pictures, or for more bits",
+                  least, frames.size.width, frames.size.height, rate, frames.bit_rate),
+      path);
+}
+
 /// What the stream's key becomes.
 Result<streams::StreamKey> updated_key(const UpdateParams& p, streams::StreamKey key, const Services& services) {
   key.rate = p.rate.value_or(key.rate);
+  if (const auto* frames = std::get_if<streams::FramesSpec>(&key.what))
+    TWEEND_TRY(check_bit_rate(*frames, key.rate, "params.rate"));
   if (!p.camera) return key;
   auto* frames = std::get_if<streams::FramesSpec>(&key.what);
   if (frames == nullptr) {
@@ -327,6 +342,7 @@ Result<streams::StreamKey> stream_key(const StreamOpenParams& p, const stage::St
   if (frames.encoding == streams::FrameEncoding::Jpeg) frames.quality = static_cast<int>(p.quality.value_or(kDefaultQuality));
   if (frames.encoding == streams::FrameEncoding::H264) TWEEND_TRY(check_h264(frames.size));
   frames.bit_rate = p.bitrate.value_or(0);
+  TWEEND_TRY(check_bit_rate(frames, key.rate, "params.bitrate"));
   if (p.camera) {
     TWEEND_TRY(check_own_camera(*p.camera, *scene->scene));
     frames.camera = p.camera->request();

@@ -15,7 +15,7 @@
 #include "server/commands/edit_helpers.hpp"
 #include "server/commands/frame_types.hpp"
 #include "server/commands/stream_types.hpp"
-#include "server/streams/clip_film.hpp"
+#include "server/streams/film_range.hpp"
 
 namespace tweend::net {
 namespace {
@@ -25,6 +25,8 @@ namespace asio = boost::asio;
 constexpr double kDefaultFps = 30.0;
 /// How often it is looked whether the client of a film is still there.
 constexpr std::chrono::milliseconds kLook{250};
+/// When whoever finds too many before him may try again.
+constexpr std::chrono::seconds kRetryFilm{10};
 
 struct ClipParams {
   static constexpr std::string_view kName = "ClipFileParams";
@@ -62,23 +64,9 @@ Result<streams::ClipFilm> film_of(const ClipParams& p, const std::string& scene,
   if (!film.view) return commands::no_such_scene(scene);
   TWEEND_ASSIGN(const double duration_s, clip_duration_s(*film.view, p.actor));
   film.from_s = p.from.value_or(0.0);
-  const double to_s = p.to.value_or(duration_s);
-  if (to_s < film.from_s) {
-    return fail(ErrorCode::InvalidParams,
-                fmt::format("expected a time from {} on, where the film begins, found {}", film.from_s, to_s),
-                p.to ? "params.to" : "params.from");
-  }
   film.fps = p.fps.value_or(kDefaultFps);
-  // As numbers first: what is too much for the limit may be too much to count.
-  const std::size_t most = services.limits.film_pictures;
-  if ((to_s - film.from_s) * film.fps > static_cast<double>(most) + 0.5) {
-    return fail(ErrorCode::Limit,
-                fmt::format("expected a film of at most {} pictures, found {:.0f}; ask for part of it, or for "
-                            "fewer a second",
-                            most, (to_s - film.from_s) * film.fps),
-                p.to ? "params.to" : "params.from");
-  }
-  film.pictures = streams::film_pictures(film.from_s, to_s, film.fps);
+  TWEEND_ASSIGN(film.pictures,
+                streams::pictures_of({film.from_s, p.to, film.fps}, duration_s, services.limits.film_pictures, "params."));
   TWEEND_ASSIGN(film.size, commands::frame_size(p.width, p.height, services));
   TWEEND_TRY(commands::check_even(film.size));
   return film;
@@ -88,7 +76,7 @@ Result<streams::ClipFilm> film_of(const ClipParams& p, const std::string& scene,
 struct AwaitedFilm {
   explicit AwaitedFilm(const asio::any_io_executor& executor) : arrived(executor) {}
   asio::steady_timer arrived;  ///< cancelled when the film is there
-  std::optional<Result<std::string>> file;
+  std::optional<Result<streams::MadeFilm>> made;
 };
 
 /// Whether the other side has closed or reset the connection; what it sent before may still be unread.
@@ -108,25 +96,30 @@ asio::awaitable<HttpResponse> answer_clip(const HttpRequest& request, const Scen
   const auto awaited = std::make_shared<AwaitedFilm>(co_await asio::this_coro::executor);
   // Held here alone: with this coroutine the interest in the film ends.
   const auto interest = std::make_shared<const char>();
-  context.services.films.make(std::move(*film), interest, [awaited, to_network = context.to_network](Result<std::string> file) {
-    to_network([awaited, file = std::move(file)]() mutable {
-      awaited->file = std::move(file);
-      awaited->arrived.cancel();
-    });
-  });
-  while (!awaited->file) {
+  const Status taken = context.services.films.make(std::move(*film), interest,
+                                                   [awaited, to_network = context.to_network](Result<streams::MadeFilm> made) {
+                                                     to_network([awaited, made = std::move(made)]() mutable {
+                                                       awaited->made = std::move(made);
+                                                       awaited->arrived.cancel();
+                                                     });
+                                                   });
+  if (!taken) co_return refuse_for_now(request, taken.error(), kRetryFilm);
+  while (!awaited->made) {
     awaited->arrived.expires_after(kLook);
     co_await awaited->arrived.async_wait(asio::as_tuple(asio::use_awaitable));
     // A server that stops has closed the socket's reading side itself, and its films end by themselves.
-    if (awaited->file || context.stopping || !has_left(socket)) continue;
+    if (awaited->made || context.stopping || !has_left(socket)) continue;
     HttpResponse gone = refuse(request, fail(ErrorCode::Unavailable,
                                              "expected a client that waits for the film, found that it has "
                                              "closed its side; keep the connection open until the answer"));
     gone.keep_alive(false);
     co_return gone;
   }
-  if (!*awaited->file) co_return refuse(request, awaited->file->error());
-  co_return http_answer(request, 200, "video/mp4", std::move(**awaited->file));
+  if (!*awaited->made) co_return refuse(request, awaited->made->error());
+  streams::MadeFilm& made = **awaited->made;
+  HttpResponse response = http_answer(request, 200, "video/mp4", std::move(made.file));
+  response.film = std::move(made.place);
+  co_return response;
 }
 
 }  // namespace tweend::net

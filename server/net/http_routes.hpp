@@ -3,6 +3,7 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -12,7 +13,10 @@
 namespace tweend::net {
 
 using HttpRequest = boost::beast::http::request<boost::beast::http::string_body>;
-using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
+struct HttpResponse : boost::beast::http::response<boost::beast::http::string_body> {
+  using boost::beast::http::response<boost::beast::http::string_body>::response;
+  std::shared_ptr<const void> film;  ///< the place of a film among those in memory; null: it is none
+};
 
 /// A plain answer; keeps or closes the connection as the request asked for.
 [[nodiscard]] HttpResponse http_answer(const HttpRequest& request, unsigned status, std::string_view content_type,

@@ -26,10 +26,12 @@ namespace http = boost::beast::http;
 
 constexpr auto kAwait = asio::as_tuple(asio::use_awaitable);
 constexpr std::uint32_t kHeaderBytes = 16U << 10U;
-constexpr std::size_t kSlowestBytesPerSecond = 64U << 10U;  ///< of clients that read a large file
+/// Of clients that read a large file, and of those that keep others from a film meanwhile.
+constexpr std::size_t kSlowestBytesPerSecond = 64U << 10U, kSlowestFilmBytesPerSecond = 1U << 20U;
 
 asio::awaitable<bool> write(beast::tcp_stream& stream, const HttpResponse& response, Metrics& metrics) {
-  stream.expires_after(kHttpIdle + std::chrono::seconds(response.body().size() / kSlowestBytesPerSecond));
+  const std::size_t slowest = response.film ? kSlowestFilmBytesPerSecond : kSlowestBytesPerSecond;
+  stream.expires_after(kHttpIdle + std::chrono::seconds(response.body().size() / slowest));
   const auto [error, bytes] = co_await http::async_write(stream, response, kAwait);
   add(metrics.bytes_sent_total, static_cast<std::int64_t>(bytes));
   co_return !error;

@@ -22,6 +22,9 @@ namespace http = boost::beast::http;
 
 constexpr std::string_view kText = "text/plain; charset=utf-8";
 
+/// When whoever finds too many before him may try again: some of a thousand pictures are drawn by then.
+constexpr std::chrono::seconds kRetryPicture{1};
+
 int hex_digit(char c) noexcept {
   if (c >= '0' && c <= '9') return c - '0';
   if (c >= 'a' && c <= 'f') return c - 'a' + 10;
@@ -76,6 +79,12 @@ struct Awaited {
 HttpResponse refuse(const HttpRequest& request, const Error& error) {
   const std::string path = error.path.empty() ? "" : error.path + ": ";
   return http_answer(request, http_status(error.code), kText, path + error.message + "\n");
+}
+
+HttpResponse refuse_for_now(const HttpRequest& request, const Error& error, std::chrono::seconds retry_after) {
+  HttpResponse response = refuse(request, error);
+  response.set(http::field::retry_after, std::to_string(retry_after.count()));
+  return response;
 }
 
 std::string decode_path(std::string_view text) { return decoded(text, false); }
@@ -141,19 +150,21 @@ asio::awaitable<HttpResponse> answer_frame(const HttpRequest& request, const Sce
   if (!still) co_return refuse(request, still.error());
 
   const auto awaited = std::make_shared<Awaited>(co_await asio::this_coro::executor);
-  services.stills.render(std::move(*still), [awaited, to_network = context.to_network](Result<streams::Still> done) {
-    // Megabytes are copied here, on the worker.
-    Result<std::string> file = std::string();
-    if (done) {
-      file->assign(reinterpret_cast<const char*>(done->file.data()), done->file.size());
-    } else {
-      file = done.error();
-    }
-    to_network([awaited, file = std::move(file)]() mutable {
-      awaited->file = std::move(file);
-      awaited->arrived.cancel();
-    });
-  });
+  const Status taken =
+      services.stills.render(std::move(*still), [awaited, to_network = context.to_network](Result<streams::Still> done) {
+        // Megabytes are copied here, on the worker.
+        Result<std::string> file = std::string();
+        if (done) {
+          file->assign(reinterpret_cast<const char*>(done->file.data()), done->file.size());
+        } else {
+          file = done.error();
+        }
+        to_network([awaited, file = std::move(file)]() mutable {
+          awaited->file = std::move(file);
+          awaited->arrived.cancel();
+        });
+      });
+  if (!taken) co_return refuse_for_now(request, taken.error(), kRetryPicture);
   while (!awaited->file) co_await awaited->arrived.async_wait(asio::as_tuple(asio::use_awaitable));
   if (!*awaited->file) co_return refuse(request, awaited->file->error());
   co_return http_answer(request, 200, png ? "image/png" : "image/jpeg", std::move(**awaited->file));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
+#include <chrono>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -25,6 +26,9 @@ struct ScenePath {
 [[nodiscard]] std::string decode_path(std::string_view text);
 /// The answer of a request that is refused for this reason.
 [[nodiscard]] HttpResponse refuse(const HttpRequest& request, const Error& error);
+
+/// The same where so many wait already that it is worth asking again in a while.
+[[nodiscard]] HttpResponse refuse_for_now(const HttpRequest& request, const Error& error, std::chrono::seconds retry_after);
 
 /// What the path has said already.
 struct Member {

@@ -61,25 +61,51 @@ FilmSource::Next ClipSource::next(stage::Show& out) {
   return Next::Picture;
 }
 
-void FilmQueue::make(ClipFilm film, std::weak_ptr<const void> wanted, Done done) {
-  drop_unwanted();
-  Order order{std::move(film), std::move(wanted), std::move(done)};
-  {
-    std::unique_lock lock(mutex_);
-    if (stopping_) {
-      lock.unlock();
-      return order.done(fail(ErrorCode::Unavailable, "the server stops"));
+/// One of the places; given back with its last copy.
+class FilmQueue::Place {
+ public:
+  explicit Place(std::shared_ptr<FilmQueue> queue) : queue_(std::move(queue)) {}
+  ~Place() {
+    {
+      const std::lock_guard lock(queue_->mutex_);
+      --queue_->places_taken_;
     }
-    if (waiting_.size() >= kWaiting) {
-      lock.unlock();
-      return order.done(
-          fail(ErrorCode::Limit,
-               fmt::format("expected at most {} films to be waited for, found as many; ask again later", kWaiting)));
-    }
-    if (under_way_) return waiting_.push_back(std::move(order));
-    under_way_ = true;
+    queue_->begin_next();
   }
-  begin(std::move(order));
+  Place(const Place&) = delete;
+  Place& operator=(const Place&) = delete;
+
+ private:
+  const std::shared_ptr<FilmQueue> queue_;
+};
+
+Status FilmQueue::make(ClipFilm film, std::weak_ptr<const void> wanted, Done done) {
+  drop_unwanted();
+  {
+    const std::lock_guard lock(mutex_);
+    if (stopping_) return fail(ErrorCode::Unavailable, "the server stops");
+    if (waiting_.size() >= kWaiting) {
+      return fail(ErrorCode::Unavailable,
+                  fmt::format("expected at most {} films to be waited for, found as many; ask again later", kWaiting));
+    }
+    waiting_.push_back({std::move(film), std::move(wanted), std::move(done)});
+  }
+  begin_next();
+  return {};
+}
+
+void FilmQueue::begin_next() {
+  drop_unwanted();
+  Order next;
+  {
+    const std::lock_guard lock(mutex_);
+    if (under_way_ || waiting_.empty() || places_taken_ == kPlaces) return;
+    next = std::move(waiting_.front());
+    waiting_.pop_front();
+    under_way_ = true;
+    ++places_taken_;
+  }
+  begin(std::move(next));
 }
 
 void FilmQueue::begin(Order order) {
@@ -90,21 +116,26 @@ void FilmQueue::begin(Order order) {
     source_ = source;
     if (stopping_) source->cancel();
   }
-  const auto file = std::make_shared<MemoryFile>(limits_.film_bytes);
+  auto file = std::make_shared<MemoryFile>(limits_.film_bytes);
   auto sink =
       std::make_unique<MemoryFilm>(render::Mp4Options{film.size, film.fps, film.pictures}, file, std::move(order.wanted));
   const auto maker = std::make_shared<FilmMaker>(
       FilmMaker::Parts{source, std::move(sink), film.size, film.camera}, workers_, renderer_,
-      [this, file, wanted_pictures = film.pictures, done = std::move(order.done)](const Result<Film>& made) {
+      [self = shared_from_this(), file, place = std::make_shared<const Place>(shared_from_this()),
+       wanted_pictures = film.pictures, done = std::move(order.done)](const Result<Film>& made) mutable {
         if (!made) {
           done(advised(made.error()));
         } else if (made->pictures < wanted_pictures) {
           done(fail(ErrorCode::Unavailable, "the server stops"));
         } else {
-          done(std::move(file->bytes));
+          done(MadeFilm{std::move(file->bytes), std::move(place)});
         }
-        ended();
+        // In this order: a place is free once its memory is.
+        file.reset();
+        place.reset();
+        self->ended();
       });
+  file.reset();
   maker->go_on();
 }
 
@@ -121,19 +152,13 @@ void FilmQueue::drop_unwanted() {
 }
 
 void FilmQueue::ended() {
-  drop_unwanted();
-  Order next;
   {
     const std::lock_guard lock(mutex_);
     source_.reset();
-    if (waiting_.empty()) {
-      under_way_ = false;
-      return idle_.notify_all();
-    }
-    next = std::move(waiting_.front());
-    waiting_.pop_front();
+    under_way_ = false;
+    idle_.notify_all();
   }
-  begin(std::move(next));
+  begin_next();
 }
 
 void FilmQueue::stop() {

@@ -48,23 +48,35 @@ struct ClipFilm {
   ClockUs now_us = 0;
 };
 
-/// Films of clips as MP4 files in memory, one at a time: whoever asks for many takes nothing from streams and recordings.
-/// Any thread.
-class FilmQueue {
+/// A film that is made, and what it holds of its queue: its place, for as long as somebody keeps it.
+struct MadeFilm {
+  std::string file;
+  std::shared_ptr<const void> place;
+};
+
+/// Films of clips as MP4 files in memory, one at a time: whoever asks for many takes nothing from streams and recordings. Each
+/// has a place from its first picture until its last reader lets go of it, so that slow readers hold a bounded memory; where
+/// all are taken, the next one waits. Any thread. Held by a shared_ptr: places may outlive all but the queue itself, once
+/// stopped.
+class FilmQueue : public std::enable_shared_from_this<FilmQueue> {
  public:
   /// How many may wait; the next one is refused.
   static constexpr std::size_t kWaiting = 64;
-  using Done = std::function<void(Result<std::string>)>;
+  /// How many there are in memory, the one under way among them.
+  static constexpr std::size_t kPlaces = 4;
+  using Done = std::function<void(Result<MadeFilm>)>;
 
-  /// @param limits  film_bytes; outlives the queue
+  /// All outlive stop().
+  /// @param limits  film_bytes
   FilmQueue(WorkerPool& workers, render::RenderThread& renderer, const Limits& limits)
       : workers_(workers), renderer_(renderer), limits_(limits) {}
 
   /// @param wanted  once it is gone, so is the interest in the film: under way it ends with its next picture, waiting it
-  ///                gives its place to another
-  /// @param done    once: the file, on a worker; Limit where too many wait (at once) or it gets too long, what the writer
-  ///                refuses, Unavailable where the interest is gone or the server stops
-  void make(ClipFilm film, std::weak_ptr<const void> wanted, Done done);
+  ///                gives its turn to another
+  /// @param done    once, on any thread: the film; Limit where it gets too long, what the writer refuses, Unavailable where the
+  ///                interest is gone or the server stops
+  /// @return Unavailable where too many wait; `done` is not called then
+  [[nodiscard]] Status make(ClipFilm film, std::weak_ptr<const void> wanted, Done done);
   /// Gives up what waits and what is under way; returns when nothing is. Again does nothing. One thread only.
   void stop();
 
@@ -74,6 +86,9 @@ class FilmQueue {
     std::weak_ptr<const void> wanted;
     Done done;
   };
+  class Place;
+  /// The next film that waits, if it may.
+  void begin_next();
   void begin(Order order);
   void ended();
   /// Takes out of those that wait what nobody waits for any more.
@@ -85,6 +100,7 @@ class FilmQueue {
   std::mutex mutex_;
   std::condition_variable idle_;
   std::deque<Order> waiting_;
+  std::size_t places_taken_ = 0;
   bool under_way_ = false;
   bool stopping_ = false;
   std::shared_ptr<ClipSource> source_;  ///< of the one under way

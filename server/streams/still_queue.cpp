@@ -4,21 +4,21 @@
 
 namespace tweend::streams {
 
-void StillQueue::render(StillRequest request, StillDone done) {
+Status StillQueue::render(StillRequest request, StillDone done) {
   {
-    std::unique_lock lock(mutex_);
-    if (under_way_ < at_once_) {
-      ++under_way_;
-    } else if (waiting_.size() < kWaiting) {
+    const std::lock_guard lock(mutex_);
+    if (under_way_ == at_once_) {
+      if (waiting_.size() >= kWaiting) {
+        return fail(ErrorCode::Unavailable,
+                    fmt::format("expected at most {} pictures to be waited for, found as many; ask again later", kWaiting));
+      }
       waiting_.emplace_back(std::move(request), std::move(done));
-      return;
-    } else {
-      lock.unlock();
-      return done(fail(ErrorCode::Limit,
-                       fmt::format("expected at most {} pictures to be waited for, found as many; ask again later", kWaiting)));
+      return {};
     }
+    ++under_way_;
   }
   begin(std::move(request), std::move(done));
+  return {};
 }
 
 void StillQueue::begin(StillRequest request, StillDone done) {

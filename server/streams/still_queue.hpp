@@ -20,8 +20,8 @@ class StillQueue {
   StillQueue(WorkerPool& workers, render::RenderThread& renderer, std::size_t at_once)
       : workers_(workers), renderer_(renderer), at_once_(at_once) {}
 
-  /// As render_still; also Limit where too many wait already.
-  void render(StillRequest request, StillDone done);
+  /// As render_still. @return Unavailable where too many wait already; `done` is not called then
+  [[nodiscard]] Status render(StillRequest request, StillDone done);
 
  private:
   void begin(StillRequest request, StillDone done);

@@ -1,9 +1,11 @@
 """GET /scenes/{scene}/clip.mp4 (section 7): a clip as a film."""
 import os
+import select
 import signal
 import socket
 import struct
 from fractions import Fraction
+from random import Random
 
 import harness
 import pictures
@@ -94,7 +96,7 @@ class Clip(pictures.PictureCase):
         for query in ("from=-1", "to=-1", "fps=0", "fps=1e-13", "fps=1000", "from=x", "nope=1", "from=1&from=2", "scene=main"):
             self.refuses(400, query, "params." + query.split("=")[0])
         self.refuses(400, "from=1.5&to=1", "params.to")
-        self.refuses(400, "from=3", "params.from")
+        self.refuses(400, "from=3", "params.from: expected a time up to 2", "found 3")
         self.refuses(400, SMALL + "&to=1000&fps=240", "18000", "240000")
         self.refuses(400, SMALL + "&to=1e300", "18000")
         self.refuses(503, SMALL, server=self.undrawing())
@@ -140,6 +142,45 @@ class Clip(pictures.PictureCase):
                     client.sock.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, linger))
                 client.close()
             self.assertEqual(len(self.film(SMALL + "&to=0.1").times), 3)
+
+    def test_a_crowd_is_told_to_come_back(self):
+        clients = [self.waiting() for _ in range(65)]  # one under way, 64 behind it
+        status, headers, body = self.server.http("GET", f"/scenes/main/clip.mp4?{SMALL}")
+        self.assertEqual((status, headers["retry-after"]), (503, "10"))
+        self.assertIn(b"at most 64 films", body)
+        for client in clients:
+            client.sock.shutdown(socket.SHUT_WR)
+        for client in clients:
+            self.assertEqual(client.read_answer()[0], 503)
+        self.assertEqual(len(self.film(SMALL + "&to=0.1").times), 3)
+
+    def reads_nothing(self, query):
+        """A client that has begun to be sent a film, and reads no more than that."""
+        sock = socket.socket()
+        self.addCleanup(sock.close)
+        sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)  # before it connects: little leaves the server
+        sock.settimeout(30)
+        sock.connect(("127.0.0.1", self.server.port))
+        sock.sendall(f"GET /scenes/main/clip.mp4?{query} HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n".encode())
+        self.assertEqual(sock.recv(12), b"HTTP/1.1 200")
+        return sock
+
+    def test_slow_readers_keep_few_films_in_memory(self):
+        side, random = 40, Random(1)
+        indices = [v for y in range(side - 1) for x in range(side - 1) for a in (y * side + x,)
+                   for v in (a, a + 1, a + side, a + 1, a + side + 1, a + side)]
+        grids = [[v for y in range(side) for x in range(side) for v in (x / 4 - 5, y / 7 - 3, random.uniform(-1, 1))] for _ in "ab"]
+        self.c.call("actor.add", actor="noise", mesh={"positions": grids[0], "indices": indices})
+        for t, positions in enumerate(grids):
+            self.c.call("keyframe.add", actor="noise", time=t, vertices={"positions": positions})
+        held = [self.reads_nothing("width=640&height=360&fps=20&to=1&from=0") for _ in range(4)]
+        fifth = self.waiting(SMALL + "&to=0")
+        behind = self.waiting()  # once it has been found to be gone, a film would have been made
+        behind.sock.shutdown(socket.SHUT_WR)
+        self.assertEqual(behind.read_answer()[0], 503)
+        self.assertEqual(select.select([fifth.sock], [], [], 0)[0], [])
+        held[2].close()
+        self.assertEqual(fifth.read_answer()[0], 200)
 
     def test_a_client_that_asks_for_more_meanwhile_is_still_there(self):
         first, client = self.waiting(), self.waiting(SMALL)

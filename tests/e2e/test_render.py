@@ -2,6 +2,8 @@
 import json
 import os
 import re
+import resource
+import stat
 import struct
 import subprocess
 import unittest
@@ -102,6 +104,7 @@ class Films(Rendering):
         self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL, "--closed", "--duration", 2.5).times), 75)
         self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL, "--sequence-fps", 48, "--fps", 10).times), 10)
         self.assertEqual(len(self.film(f"{self.root}/cup.obj", *SMALL).times), 1)
+        self.assertIn(" 1 picture at 30 ", self.render(f"{self.root}/cup.obj", *SMALL, "--mp4", "a.mp4"))
 
     def test_it_shows_what_pictures_of_its_times_show(self):
         film = self.film(f"{self.root}/wave", *SMALL, "--from", 0.5, "--to", 1.5, "--fps", 10)
@@ -122,17 +125,21 @@ class Films(Rendering):
             self.assertEqual(len(film.times), 24)
         os.remove(f"{self.out}/a.mp4")
         self.refuses(f"{self.folder()}/none.json", "--mp4", "a.mp4", says=("none.json",))
-        self.refuses(f"{folder}/scene.json", "--mp4", "a.mp4", says=("wave",))
+        self.refuses(f"{folder}/scene.json", "--mp4", "a.mp4", says=("scene.json: edits[0].params.asset: ", "wave"))
+        self.refuses(f"{folder}/scene.json", f"{self.root}/wave", "--mp4", "a.mp4", says=("file of edits alone", "scene.json"))
         self.refuses(f"{folder}/scene.json", "--closed", says=("--closed",))
 
     def test_refusals(self):
         wave = f"{self.root}/wave"
         self.refuses(wave, "--mp4", "a.avi", says=(".mp4", "a.avi"))
         self.refuses(wave, "--mp4", "a.mp4", "--size", "63x48", says=("63x48", "even"))
-        self.refuses(wave, "--mp4", "a.mp4", "--fps", 1e-13, says=("--fps", "0.001", "1e-13"))
+        for fps in ("1e-13", "241", "1000000000"):
+            self.refuses(wave, "--mp4", "a.mp4", "--fps", fps, says=("--fps", "0.001 to 240", fps))
+        self.refuses(wave, "--mp4", "a.mp4", "--size", "16386x2", says=("16384", "16386x2"))
+        self.assertLess(len(self.refuses(wave, "--mp4", "a.mp4", "--to", "1e300", says=("89478314", "ask for part"))), 200)
         self.refuses(wave, "--mp4", "a.mp4", "--from", 3, says=("--from", "2"))
         self.refuses(wave, "--mp4", "a.mp4", "--from", 1, "--to", 0.5, says=("--to",))
-        self.refuses(wave, "--mp4", "none/a.mp4", says=("none/a.mp4", "No such file"))
+        self.refuses(wave, "--mp4", "none/a.mp4", says=("none/a.mp4", "No such file", "make the folder none"))
         for more in (("--at", 0), ("-o", "a.png"), ("--sheet",)):
             self.refuses(wave, "--mp4", "a.mp4", *more, code=2)
         self.refuses(wave, "--from", 1, code=2)
@@ -141,6 +148,40 @@ class Films(Rendering):
         with open(f"{self.out}/a.mp4", "w") as f:
             f.write("old")
         self.assertEqual(len(self.film(f"{self.root}/wave", *SMALL).times), 60)
+
+    def test_a_link_stays_and_what_it_names_is_written(self):
+        elsewhere = self.folder()
+        for target in ("there.mp4", "new.mp4"):
+            with open(f"{elsewhere}/there.mp4", "w") as f:
+                f.write("old")
+            os.symlink(f"{elsewhere}/{target}", f"{self.out}/a.mp4")
+            self.assertEqual(len(self.film(f"{self.root}/cup.obj", *SMALL).times), 1)
+            self.assertTrue(os.path.islink(f"{self.out}/a.mp4"))
+            self.assertFalse(os.path.islink(f"{elsewhere}/{target}"))
+            self.assertEqual(len(Film(f"{elsewhere}/{target}").times), 1)
+            os.remove(f"{self.out}/a.mp4")
+        self.assertEqual(sorted(os.listdir(elsewhere)), ["new.mp4", "there.mp4"])
+
+    def test_places_where_no_film_can_be(self):
+        elsewhere, cup = self.folder(), f"{self.root}/cup.obj"
+        os.mkfifo(f"{elsewhere}/fifo.mp4")
+        os.mkdir(f"{elsewhere}/folder.mp4")
+        os.symlink("round.mp4", f"{elsewhere}/round.mp4")
+        os.symlink("fifo.mp4", f"{elsewhere}/link.mp4")
+        before = sorted(os.listdir(elsewhere))
+        for name, reason in (("fifo", "no regular file"), ("link", "no regular file"), ("folder", "Is a directory"),
+                             ("round", "symbolic links"), (300 * "a", "File name too long")):
+            self.refuses(cup, "--mp4", f"{elsewhere}/{name}.mp4", says=(name, reason, "choose another"))
+        self.assertEqual(sorted(os.listdir(elsewhere)), before)
+        self.assertTrue(stat.S_ISFIFO(os.stat(f"{elsewhere}/fifo.mp4").st_mode))
+
+    def test_a_file_that_may_not_get_so_long_is_an_error(self):
+        limit = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+        done = subprocess.run([TWEEND, "render", f"{self.root}/cup.obj", *SMALL, "--mp4", "a.mp4"], capture_output=True,
+                              text=True, timeout=60, cwd=self.out, preexec_fn=limit)
+        self.assertEqual(done.returncode, 1, done)
+        self.assertIn("File too large", done.stderr)
+        self.assertEqual(os.listdir(self.out), [])
 
     def test_one_that_is_killed_leaves_nothing_under_the_name(self):
         program = subprocess.Popen([TWEEND, "render", f"{self.root}/wave", "--mp4", "a.mp4", "--to", "100000"], cwd=self.out,

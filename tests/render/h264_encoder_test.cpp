@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <limits>
 #include <random>
 #include <vector>
 
+#include "render/h264_level.hpp"
 #include "tests/render/support/film.hpp"
 
 namespace tweend::render {
@@ -63,8 +63,8 @@ std::vector<int> types_of(const std::vector<std::byte>& bytes) {
   return types;
 }
 
-TEST(H264Encoder, RefusesOddSidesAndNoPixels) {
-  for (const Size size : {Size{191, 108}, Size{192, 107}, Size{0, 108}, Size{192, 0}}) {
+TEST(H264Encoder, RefusesOddSidesNoPixelsAndTooMany) {
+  for (const Size size : {Size{191, 108}, Size{192, 107}, Size{0, 108}, Size{192, 0}, Size{16'386, 16}, Size{16, 16'386}}) {
     const auto none = H264Encoder::open({.size = size});
     ASSERT_FALSE(none);
     EXPECT_EQ(none.error().code, ErrorCode::InvalidParams);
@@ -76,7 +76,6 @@ TEST(H264Encoder, RefusesARateThatIsNone) {
   for (const double rate : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
     EXPECT_FALSE(H264Encoder::open({.size = kSize, .rate = rate}));
   }
-  EXPECT_FALSE(H264Encoder::open({.size = kSize, .bit_rate = -1}));
 }
 
 TEST(H264Encoder, RefusesAPictureOfAnotherSizeAndGoesOn) {
@@ -181,25 +180,72 @@ TEST(H264Encoder, AFileHasItsParameterSetsApart) {
   EXPECT_TRUE(open({.size = kSize}).parameter_sets().empty());
 }
 
-TEST(H264Encoder, NoSecondTakesMoreBitsThanAllowed) {
-  constexpr std::int64_t kMost = 600'000;
-  constexpr std::size_t kRate = 30;
-  H264Encoder encoder = open({.size = kSize, .rate = kRate, .bit_rate = kMost});
-  std::mt19937 random(5);
-  std::deque<std::size_t> second;
-  std::size_t most = 0, all = 0;
-  for (std::size_t k = 0; k < 5 * kRate; ++k) {
-    Image noise(kSize);  // what packs worst
-    for (auto& value : noise.rgb) value = static_cast<std::uint8_t>(random());
-    second.push_back(8 * encode(encoder, noise, k % 50 == 0).size());
-    if (second.size() > kRate) second.pop_front();
-    std::size_t sum = 0;
-    for (const std::size_t bits : second) sum += bits;
-    most = std::max(most, sum);
-    all += second.back();
+TEST(H264Encoder, RefusesFewerBitsThanTheCoarsestPicturesTake) {
+  const std::int64_t least = h264_least(kSize, 30.0).bit_rate;
+  for (const std::int64_t bits : {std::int64_t{-1}, std::int64_t{1}, least - 1}) {
+    const auto none = H264Encoder::open({.size = kSize, .bit_rate = bits});
+    ASSERT_FALSE(none);
+    EXPECT_EQ(none.error().code, ErrorCode::InvalidParams);
+    EXPECT_NE(none.error().message.find(std::to_string(least)), std::string::npos) << none.error().message;
   }
-  EXPECT_LE(most, static_cast<std::size_t>(kMost));
-  EXPECT_GE(all, static_cast<std::size_t>(kMost));  // of five seconds: it does use what it may
+  EXPECT_TRUE(H264Encoder::open({.size = kSize, .bit_rate = least}));
+}
+
+/// What packs worst, and where the bits of a picture are.
+struct Sent {
+  double at_s;
+  std::size_t bits;
+};
+
+Image noise(Size size, std::mt19937& random) {
+  Image image(size);
+  for (auto& value : image.rgb) value = static_cast<std::uint8_t>(random());
+  return image;
+}
+
+/// The most that half-open seconds, each from a picture on, hold.
+std::size_t fullest_second(const std::vector<Sent>& sent) {
+  std::size_t most = 0;
+  for (std::size_t first = 0; first < sent.size(); ++first) {
+    std::size_t sum = 0;
+    for (std::size_t k = first; k < sent.size() && sent[k].at_s < sent[first].at_s + 1.0 - 1e-9; ++k) sum += sent[k].bits;
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+TEST(H264Encoder, NoSecondTakesMoreBitsThanAllowed) {
+  std::mt19937 random(5);
+  for (const Size size : {Size{64, 64}, kSize}) {
+    for (const double rate : {0.2, 1.0, 4.0, 60.0}) {
+      for (const std::int64_t times : {1, 3, 10}) {
+        const std::int64_t most = times * h264_least(size, rate).bit_rate;
+        H264Encoder encoder = open({.size = size, .rate = rate, .bit_rate = most});
+        std::vector<Sent> sent;
+        // Two seconds of what plays, then two of what stands still and is asked for again, from between two turns on.
+        const auto turns = static_cast<std::size_t>(std::ceil(2.0 * rate));
+        for (std::size_t k = 0; k < turns; ++k) {
+          const bool key = k % static_cast<std::size_t>(std::ceil(rate / 4.0)) == 0;
+          sent.push_back({static_cast<double>(k) / rate, 8 * encode(encoder, noise(size, random), key).size()});
+        }
+        const double paused_s = (static_cast<double>(turns) - 0.9) / rate;
+        const Image still = noise(size, random);
+        for (std::size_t k = 0; k < 8; ++k)
+          sent.push_back({paused_s + static_cast<double>(k) / 4.0, 8 * encode(encoder, still, true).size()});
+        EXPECT_LE(fullest_second(sent), static_cast<std::size_t>(most))
+            << size.width << " x " << size.height << " at " << rate << " a second";
+      }
+    }
+  }
+}
+
+TEST(H264Encoder, ItUsesTheBitsThatItMay) {
+  constexpr std::int64_t kMost = 600'000;
+  H264Encoder encoder = open({.size = kSize, .bit_rate = kMost});
+  std::mt19937 random(5);
+  std::size_t all = 0;
+  for (std::size_t k = 0; k < 60; ++k) all += 8 * encode(encoder, noise(kSize, random), k % 50 == 0).size();
+  EXPECT_GE(all, static_cast<std::size_t>(kMost)) << "of two seconds";
 }
 
 TEST(H264Encoder, WhatDoesNotMoveTakesNextToNothing) {

@@ -70,6 +70,26 @@ TEST(Mp4Writer, RefusesWhatTheEncoderRefuses) {
   EXPECT_TRUE(file.bytes.empty());
 }
 
+TEST(Mp4Writer, RefusesRatesItCouldNotKeep) {
+  MemoryFile file;
+  for (const double fps : {1e9, 1e6 + 1.0, 0.9e-6, 1e-300}) {
+    const auto none = Mp4Writer::open({.size = kSize, .fps = fps}, file);
+    ASSERT_FALSE(none) << fps;
+    EXPECT_EQ(none.error().code, ErrorCode::InvalidParams);
+  }
+  for (const double fps : {1e6, 1e-6}) EXPECT_TRUE(Mp4Writer::open({.size = kSize, .fps = fps}, file)) << fps;
+}
+
+TEST(Mp4Writer, RefusesMorePicturesThanItsIndexCanForetell) {
+  MemoryFile file;
+  // Of 24 bytes each, behind 4 KiB.
+  const std::size_t most = (2'147'483'647 - 4'096) / 24;
+  const auto none = Mp4Writer::open({.size = kSize, .pictures = most + 1}, file);
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::Limit);
+  EXPECT_EQ(Mp4Writer::kMostPictures, most);
+}
+
 TEST(Mp4Writer, RefusesAFilmWithoutPictures) {
   MemoryFile file;
   Mp4Writer writer = open({.size = kSize}, file);
