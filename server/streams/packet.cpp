@@ -1,5 +1,6 @@
 #include "server/streams/packet.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tweend::streams {
@@ -21,6 +22,8 @@ std::span<std::byte> Payload::resize(std::size_t bytes) {
   size_ = bytes;
   return {memory_.get() + kHeadroom, size_};
 }
+
+void Payload::assign(std::span<const std::byte> bytes) { std::copy(bytes.begin(), bytes.end(), resize(bytes.size()).begin()); }
 
 std::span<float> Payload::resize_floats(std::size_t count) {
   // operator new aligns for any number, and starts the lifetime of those that are written to it.

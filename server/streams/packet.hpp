@@ -21,8 +21,9 @@ class Payload {
   std::span<std::byte> resize(std::size_t bytes);
   /// The same, as numbers.
   std::span<float> resize_floats(std::size_t count);
-  /// Less than there was room for: a compressed picture's length is known afterwards.
-  void truncate(std::size_t bytes) noexcept { size_ = bytes < size_ ? bytes : size_; }
+  /// A copy of bytes, and room for these alone. An encoder whose length is known afterwards writes to memory of its own first:
+  /// packets that wait for slow readers would each keep the room for the longest.
+  void assign(std::span<const std::byte> bytes);
 
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {memory_.get() + kHeadroom, size_}; }
