@@ -36,6 +36,8 @@ std::span<const float> Payload::floats() const noexcept {
 
 StreamMeter* Packet::meter() const noexcept { return pool_ ? pool_->meter_.get() : nullptr; }
 
+ClockUs Packet::exchange_delay(ClockUs delay_us) const noexcept { return std::exchange(pool_->last_delay_us_, delay_us); }
+
 NewPacketPtr PacketPool::take() {
   std::unique_ptr<Packet> packet;
   {
