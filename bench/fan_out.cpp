@@ -48,7 +48,7 @@ std::byte payload_byte(std::size_t i) { return static_cast<std::byte>((i * 31 + 
 class Audience {
  public:
   Audience(net::Framing framing, std::size_t readers, bench::DrainingProcess& drain)
-      : framing_(framing), drain_(drain), mailbox_([this](Task task) { boost::asio::post(io_, std::move(task)); }) {
+      : framing_(framing), drain_(drain), mailbox_([this](Task task) { boost::asio::post(io_, std::move(task)); }, metrics_) {
     poll_ = ::epoll_create1(EPOLL_CLOEXEC);
     for (const int end : drain.connect(readers)) {
       net::Tcp::socket socket(io_, net::Tcp::v4(), end);

@@ -29,7 +29,7 @@ Engine::Engine(const Limits& limits, std::vector<assets::AssetRoot> roots, const
       stills_(workers_, renderer_, kStillsAtOnce),
       stage_(store_, limits_, metrics_),
       hub_(stage_, workers_, renderer_, deliver, metrics_),
-      recorder_(stage_, film_workers_, renderer_, limits_),
+      recorder_(stage_, film_workers_, renderer_, limits_, metrics_),
       films_(std::make_shared<streams::FilmQueue>(film_workers_, renderer_, limits_)),
       events_(hub_, recorder_, deliver, metrics_),
       services_{limits_, metrics_, library_, stage_, hub_, events_, workers_, renderer_, stills_, recorder_, *films_} {}

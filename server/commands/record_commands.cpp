@@ -20,6 +20,10 @@ template <>
 struct tweend::protocol::EnumNames<tweend::commands::RecordFormat> {
   static constexpr std::array<std::string_view, 2> kNames{"mp4", "png_sequence"};
 };
+template <>
+struct tweend::protocol::EnumNames<tweend::streams::RecordingState> {
+  static constexpr std::array<std::string_view, 4> kNames{"running", "ending", "done", "failed"};
+};
 
 namespace tweend::commands {
 namespace {
@@ -92,6 +96,40 @@ Status check_name(const std::string& name, RecordFormat format) {
   return {};
 }
 
+struct RecordListParams {
+  static constexpr std::string_view kName = "RecordListParams";
+  static void describe(FieldList<RecordListParams>&) {}
+};
+
+struct RecordingInfo {
+  static constexpr std::string_view kName = "Recording";
+  std::int64_t recording = 0;
+  std::string scene, name;
+  double fps = 0.0;
+  std::uint64_t frames = 0;
+  std::int64_t start_us = 0;
+  streams::RecordingState state = streams::RecordingState::Running;
+  static void describe(FieldList<RecordingInfo>& f) {
+    using T = RecordingInfo;
+    f.add<&T::recording>("recording", "The id that record.stop takes.");
+    f.add<&T::scene>("scene", "What it shows.");
+    f.add<&T::name>("name", "Of the file, or of the pictures' folder.");
+    f.add<&T::fps>("fps", "Pictures a second.");
+    f.add<&T::frames>("frames", "Pictures made by now; 0 of one that has failed.");
+    f.add<&T::start_us>("start_us", "The reading that the first picture shows.");
+    f.add<&T::state>("state",
+                     "running, ending (its last pictures are made), or, until record.stop is told of it, done or failed.");
+  }
+};
+
+struct RecordListResult {
+  static constexpr std::string_view kName = "RecordList";
+  std::vector<RecordingInfo> recordings;
+  static void describe(FieldList<RecordListResult>& f) {
+    f.add<&RecordListResult::recordings>("recordings", "In the order they began.");
+  }
+};
+
 /// All but where it goes.
 Result<streams::RecordingRequest> recording_request(const RecordStartParams& p, const QueryContext& context) {
   const RecordFormat format = p.format.value_or(RecordFormat::Mp4);
@@ -127,17 +165,21 @@ Result<std::unique_ptr<streams::PictureSink>> open_sink(RecordFormat format, con
 void start(const RecordStartParams& p, const QueryContext& context, const AsyncDone<RecordStartResult>& done) {
   Result<streams::RecordingRequest> checked = recording_request(p, context);
   if (!checked) return done(checked.error());
-  // Shared, since what is posted has to be copyable and a sink is not.
-  const auto request = std::make_shared<streams::RecordingRequest>(std::move(*checked));
   const RecordFormat format = p.format.value_or(RecordFormat::Mp4);
-  context.services.stage.post([request, format, services = context.services, done] {
-    if (const Status may = services.recorder.may_start(*request); !may) return done(may.error());
-    services.workers.post([request, format, services, done] {
-      auto sink = open_sink(format, *request, services.assets);
-      if (!sink) return done(sink.error());
-      request->sink = std::move(*sink);
-      services.stage.post([request, &recorder = services.recorder, done] {
-        const auto started = recorder.start(std::move(*request));
+  // The place first: no more sinks are made than may be.
+  context.services.stage.post([request = std::move(*checked), format, services = context.services, done] {
+    const auto id = services.recorder.reserve(request);
+    if (!id) return done(id.error());
+    services.workers.post([request, format, services, done, id = *id] {
+      // Shared, since what is posted has to be copyable and a sink is not.
+      const auto sink =
+          std::make_shared<Result<std::unique_ptr<streams::PictureSink>>>(open_sink(format, request, services.assets));
+      services.stage.post([sink, &recorder = services.recorder, done, id] {
+        if (!*sink) {
+          recorder.release(id);
+          return done(sink->error());
+        }
+        const auto started = recorder.start(id, std::move(**sink));
         if (!started) return done(started.error());
         done(RecordStartResult{started->id, started->start_us});
       });
@@ -154,6 +196,16 @@ void stop(const RecordStopParams& p, const QueryContext& context, const AsyncDon
   });
 }
 
+void list(const RecordListParams&, const QueryContext& context, const AsyncDone<RecordListResult>& done) {
+  context.services.stage.post([&recorder = context.services.recorder, done] {
+    RecordListResult result;
+    for (const streams::RecordingNow& r : recorder.list()) {
+      result.recordings.push_back({r.id, r.scene, r.name, r.fps, r.pictures, r.start_us, r.state});
+    }
+    done(std::move(result));
+  });
+}
+
 }  // namespace
 
 void add_record_commands(std::vector<Command>& t) {
@@ -161,6 +213,8 @@ void add_record_commands(std::vector<Command>& t) {
                                                                                 "Record what a scene shows, to a file."));
   t.push_back(async_query_command<RecordStopResult, RecordStopParams, &stop>(
       "record.stop", Role::Admin, "End a recording; answers once its file is whole."));
+  t.push_back(async_query_command<RecordListResult, RecordListParams, &list>(
+      "record.list", Role::Admin, "The recordings that run or are ending, and those whose end nobody was told of."));
 }
 
 }  // namespace tweend::commands

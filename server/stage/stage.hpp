@@ -160,6 +160,8 @@ class Stage {
   void plan(const EditOptions& options, const EditPlan& plan, const EditDone& done);
   /// As of a reading that is not before any other that was acted on.
   void carry_out(const std::string& scene, const PlayersChange& change, ClockUs as_of_us, const PlayersDone& done);
+  /// Lets happen what happens by itself up to a reading, however late the strand is: nothing will act as of an earlier one.
+  void advance(ClockUs now_us);
 
   /// The strand, for timers of those who work on it (streams).
   [[nodiscard]] boost::asio::io_context& strand() noexcept { return io_; }
@@ -217,7 +219,6 @@ class Stage {
   void publish(const std::string& scene, SceneViewPtr view);
 
   // stage_time.cpp
-  void advance(ClockUs now_us);
   void settle(ClockUs now_us);
   void settle_scene(const std::string& scene, const SceneViewPtr& before, ClockUs now_us);
   void tell_starts(const SceneViewPtr& before, const SceneViewPtr& after, ClockUs now_us);

@@ -15,9 +15,9 @@ namespace {
 bool is_key(const Packet& packet) noexcept { return (packet.header.flags & protocol::kFlagKey) != 0; }
 bool jumped(const Packet& packet) noexcept { return (packet.header.flags & protocol::kFlagDiscontinuity) != 0; }
 
-/// What an encoder has made of a packet.
-void finish(Packet& packet, protocol::Encoded encoded) noexcept {
-  packet.payload.truncate(encoded.bytes);
+/// What an encoder has made of a packet, at the front of `draft`.
+void finish(Packet& packet, const Payload& draft, protocol::Encoded encoded) {
+  packet.payload.assign(draft.bytes().first(encoded.bytes));
   if (encoded.key) packet.header.flags = static_cast<std::uint8_t>(packet.header.flags | protocol::kFlagKey);
 }
 
@@ -86,8 +86,9 @@ void VerticesContent::fill(const stage::ActorShow& show, model::Evaluator& evalu
     protocol::encode_vertices_q16(positions, normals, packet.payload.resize(protocol::vertices_q16_bytes(count)));
   } else if (encoding_ == VerticesEncoding::Meshopt) {
     packet.header.encoding = protocol::kVerticesMeshopt;
-    finish(packet, meshopt_.encode(positions, normals, is_key(packet),
-                                   packet.payload.resize(protocol::VerticesMeshoptEncoder::most_bytes(count))));
+    finish(packet, draft_,
+           meshopt_.encode(positions, normals, is_key(packet),
+                           draft_.resize(protocol::VerticesMeshoptEncoder::most_bytes(count))));
   }
 }
 
@@ -115,9 +116,9 @@ void PoseContent::fill(const stage::ActorShow& show, model::Evaluator& evaluator
   packet.header.encoding = protocol::kPoseF32;
   if (encoding_ == PoseEncoding::F32) return;
   packet.header.encoding = protocol::kPoseQ16;
-  finish(packet,
+  finish(packet, draft_,
          q16_.encode(out.first(out.size() - weights.size()), weights, is_key(packet),
-                     packet.payload.resize(protocol::PoseQ16Encoder::most_bytes(joints, weights.size())), jumped(packet)));
+                     draft_.resize(protocol::PoseQ16Encoder::most_bytes(joints, weights.size())), jumped(packet)));
 }
 
 }  // namespace tweend::streams

@@ -61,6 +61,7 @@ class VerticesContent final : public ActorContent {
 
   const VerticesEncoding encoding_;
   std::vector<float> floats_;  ///< what is to be encoded: positions, then normals
+  Payload draft_;              ///< as long as a packet may become
   protocol::VerticesMeshoptEncoder meshopt_;
 };
 
@@ -77,6 +78,7 @@ class PoseContent final : public ActorContent {
 
   const PoseEncoding encoding_;
   std::vector<float> floats_;  ///< what is to be encoded: joints, then weights
+  Payload draft_;              ///< as long as a packet may become
   protocol::PoseQ16Encoder q16_;
 };
 

@@ -31,8 +31,9 @@ class ContentOwner {
 };
 
 /// What the packets of one producer hold, and the way they are made. Functions are called on the stage's strand; the work
-/// itself is done elsewhere and, but for PNG files, allocates nothing once it runs. Kept alive by its owner until all that was
-/// begun is made.
+/// itself is done elsewhere, in memory that is kept: that of an actor's packet allocates nothing once it has seen the longest.
+/// A picture takes a few small allocations on its way from thread to thread, a PNG file its own length besides. Kept alive by
+/// its owner until all that was begun is made.
 class Content {
  public:
   virtual ~Content() = default;

@@ -33,6 +33,18 @@ void FilmMaker::go_on() {
   workers_.post([self = shared_from_this()] { self->compose(); });
 }
 
+void FilmMaker::give_up(const Error& error) {
+  const std::lock_guard lock(mutex_);
+  if (ended_) return;
+  end(error);
+  if (over()) workers_.post([self = shared_from_this()] { self->finish(); });
+}
+
+std::size_t FilmMaker::pictures() const {
+  const std::lock_guard lock(mutex_);
+  return pictures_;
+}
+
 void FilmMaker::compose() {
   for (;;) {
     const FilmSource::Next next = source_->next(show_);

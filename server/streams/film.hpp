@@ -64,6 +64,10 @@ class FilmMaker final : public render::FrameJob, public std::enable_shared_from_
 
   /// Begins; again once a source that said Later has more. Any thread.
   void go_on();
+  /// Ends it with an error, once what is under way is over. Any thread.
+  void give_up(const Error& error);
+  /// How many pictures the sink has taken. Any thread.
+  [[nodiscard]] std::size_t pictures() const;
 
   // render::FrameJob, on the render thread
   [[nodiscard]] const render::Picture& picture() const noexcept override { return picture_; }
@@ -90,7 +94,7 @@ class FilmMaker final : public render::FrameJob, public std::enable_shared_from_
   FrameComposer composer_;
   render::Picture picture_;
 
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   bool drawing_ = false;      ///< a picture is asked for, composed or drawn, or waits to be encoded
   bool encoding_ = false;     ///< one is being encoded
   bool asked_again_ = false;  ///< go_on() came meanwhile

@@ -101,11 +101,11 @@ Status FrameContent::write(const render::ImageView& image, Packet& packet) {
   if (spec_.encoding == FrameEncoding::H264) return write_h264(image, packet);
   if (spec_.encoding == FrameEncoding::Jpeg) {
     TWEEND_ASSIGN(const std::size_t bytes,
-                  jpeg_.encode(image, encoded_.quality, payload.resize(render::JpegEncoder::most_bytes(image.size))));
-    payload.truncate(bytes);
+                  jpeg_.encode(image, encoded_.quality, draft_.resize(render::JpegEncoder::most_bytes(image.size))));
+    payload.assign(draft_.bytes().first(bytes));
   } else if (spec_.encoding == FrameEncoding::Png) {
     TWEEND_ASSIGN(const std::vector<std::byte> file, render::encode_png(image));
-    std::memcpy(payload.resize(file.size()).data(), file.data(), file.size());
+    payload.assign(file);
   } else {
     std::byte* to = payload.resize(image.bytes.size()).data();
     for (std::size_t y = 0; y < image.size.height; ++y) {
@@ -122,7 +122,7 @@ Status FrameContent::write_h264(const render::ImageView& image, Packet& packet) 
     h264_ = std::move(encoder);
   }
   TWEEND_ASSIGN(const render::H264Encoder::Unit unit, h264_->encode(image, (packet.header.flags & protocol::kFlagKey) != 0));
-  std::memcpy(packet.payload.resize(unit.bytes.size()).data(), unit.bytes.data(), unit.bytes.size());
+  packet.payload.assign(unit.bytes);
   if (unit.key) packet.header.flags = static_cast<std::uint8_t>(packet.header.flags | protocol::kFlagKey);
   return {};
 }

@@ -67,6 +67,7 @@ class FrameContent final : public Content, public PictureUser, public std::enabl
   Order encoded_;
   Result<render::PixelsPtr> encoding_pixels_{render::PixelsPtr()};
   render::JpegEncoder jpeg_;
+  Payload draft_;                            ///< as long as a JPEG may become
   std::optional<render::H264Encoder> h264_;  ///< opened with the first picture
   Status outcome_;
 };

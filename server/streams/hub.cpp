@@ -21,7 +21,7 @@ Hub::Hub(stage::Stage& stage, WorkerPool& workers, render::RenderThread& rendere
     : stage_(stage),
       workers_(workers),
       desk_(stage.strand(), workers, renderer),
-      mailbox_(std::move(deliver)),
+      mailbox_(std::move(deliver), metrics),
       metrics_(metrics) {}
 
 Hub::Producers::iterator Hub::find(const StreamKey& key) {
@@ -30,12 +30,8 @@ Hub::Producers::iterator Hub::find(const StreamKey& key) {
 
 std::shared_ptr<Producer> Hub::make_producer(const StreamKey& key) {
   ++last_source_;
-  const Producer::Environment environment{stage_.strand(),
-                                          mailbox_,
-                                          metrics_,
-                                          [this] { progressed(); },
-                                          [this] { drop_idle(); },
-                                          meters_.add(fmt::format("producer=\"{}\",{}", last_source_, labels_of(key)))};
+  const Producer::Environment environment{
+      stage_.strand(), mailbox_, metrics_, [this] { progressed(); }, [this] { drop_idle(); }, meters_.meter(labels_of(key))};
   return std::make_shared<Producer>(key, last_source_, environment, [&](ContentOwner& owner) -> std::shared_ptr<Content> {
     if (const auto* frames = std::get_if<FramesSpec>(&key.what)) {
       return std::make_shared<FrameContent>(*frames, key.rate, stage_.strand(), workers_, desk_, owner);
@@ -81,7 +77,8 @@ void Hub::retune(const StreamKey& from, const StreamKey& to, Subscription subscr
   const auto at = find(from);
   if (at != producers_.end() && (*at)->serves_only(held.get(), subscription.stream) && same_but_view(from, to) &&
       find(to) == producers_.end()) {
-    return (*at)->retune(to);
+    (*at)->retune(to, meters_.meter(labels_of(to)));
+    return progressed();  // one that is slow now is waited for no longer
   }
   unsubscribe(from, held.get(), subscription.stream);
   subscribe(to, std::move(subscription));

@@ -1,6 +1,7 @@
 #include "server/streams/mailbox.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <utility>
 
 namespace tweend::streams {
@@ -23,6 +24,11 @@ void Mailbox::drain() {
   {
     const std::lock_guard lock(mutex_);
     draining_.swap(waiting_);
+    drains_.fetch_add(1, std::memory_order_relaxed);
+  }
+  const ClockUs now_us = steady_now_us();
+  for (const Entry& entry : draining_) {
+    if (entry.delivery.packet && !entry.delivery.again) measure(entry.delivery, now_us);
   }
   for (std::size_t i = 0; i < draining_.size();) {
     if (draining_[i].task) draining_[i].task();
@@ -33,6 +39,13 @@ void Mailbox::drain() {
   for (const std::shared_ptr<PacketSink>& sink : touched_) sink->flush();
   touched_.clear();
   draining_.clear();
+}
+
+void Mailbox::measure(const Delivery& delivery, ClockUs now_us) {
+  const ClockUs delay_us = std::max<ClockUs>(0, now_us - delivery.packet->header.server_us);
+  metrics_.packet_delay_seconds.observe(delay_us);
+  const ClockUs before_us = delivery.packet->exchange_delay(delay_us);
+  if (before_us >= 0) metrics_.packet_jitter_seconds.observe(std::abs(delay_us - before_us));
 }
 
 /// Offers the packets from `begin` on that go to the same list, sink by sink: each is looked up and warmed up once.

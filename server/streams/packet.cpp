@@ -1,5 +1,6 @@
 #include "server/streams/packet.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace tweend::streams {
@@ -22,6 +23,8 @@ std::span<std::byte> Payload::resize(std::size_t bytes) {
   return {memory_.get() + kHeadroom, size_};
 }
 
+void Payload::assign(std::span<const std::byte> bytes) { std::copy(bytes.begin(), bytes.end(), resize(bytes.size()).begin()); }
+
 std::span<float> Payload::resize_floats(std::size_t count) {
   // operator new aligns for any number, and starts the lifetime of those that are written to it.
   return {reinterpret_cast<float*>(resize(count * sizeof(float)).data()), count};
@@ -32,6 +35,8 @@ std::span<const float> Payload::floats() const noexcept {
 }
 
 StreamMeter* Packet::meter() const noexcept { return pool_ ? pool_->meter_.get() : nullptr; }
+
+ClockUs Packet::exchange_delay(ClockUs delay_us) const noexcept { return std::exchange(pool_->last_delay_us_, delay_us); }
 
 NewPacketPtr PacketPool::take() {
   std::unique_ptr<Packet> packet;

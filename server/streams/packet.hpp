@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "protocol/packet.hpp"
+#include "server/base/clock.hpp"
 #include "server/streams/stream_meter.hpp"
 
 namespace tweend::streams {
@@ -21,8 +22,9 @@ class Payload {
   std::span<std::byte> resize(std::size_t bytes);
   /// The same, as numbers.
   std::span<float> resize_floats(std::size_t count);
-  /// Less than there was room for: a compressed picture's length is known afterwards.
-  void truncate(std::size_t bytes) noexcept { size_ = bytes < size_ ? bytes : size_; }
+  /// A copy of bytes, and room for these alone. An encoder whose length is known afterwards writes to memory of its own first:
+  /// packets that wait for slow readers would each keep the room for the longest.
+  void assign(std::span<const std::byte> bytes);
 
   [[nodiscard]] std::size_t capacity() const noexcept { return capacity_; }
   [[nodiscard]] std::span<const std::byte> bytes() const noexcept { return {memory_.get() + kHeadroom, size_}; }
@@ -51,6 +53,9 @@ class Packet {
   Payload payload;                ///< as it goes on the wire (little-endian machines)
   /// Counts what becomes of it. Null before it has a pool.
   [[nodiscard]] StreamMeter* meter() const noexcept;
+  /// Notes how long after its reading it was handed over. The sinks' thread's.
+  /// @return the same of its pool's packet before; negative: there was none
+  ClockUs exchange_delay(ClockUs delay_us) const noexcept;
 
  private:
   friend class PacketPool;
@@ -77,6 +82,7 @@ class PacketPool : public std::enable_shared_from_this<PacketPool> {
   void give_back(std::unique_ptr<Packet> packet);
 
   const std::shared_ptr<StreamMeter> meter_;
+  ClockUs last_delay_us_ = -1;  ///< the sinks' thread's
 
   std::mutex mutex_;
   std::vector<std::unique_ptr<Packet>> free_;

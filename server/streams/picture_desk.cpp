@@ -107,16 +107,18 @@ void PictureDesk::compose_and_submit(SharedDrawing& drawing) {
 
 void PictureDesk::composed(const MomentPtr& moment) {
   moment->state = SceneMoment::State::Composed;
-  const MomentPtr held = moment;  // the reference is to a member of one of these
-  for (std::size_t i = 0; i < drawings_.size(); ++i) {
-    SharedDrawing& drawing = *drawings_[i];
-    if (drawing.moment != held || std::exchange(drawing.submitted, true)) continue;
+  std::vector<std::shared_ptr<SharedDrawing>> not_made;  // users may order others, or have drawings trimmed, as they are told
+  for (const auto& drawing : drawings_) {
+    if (drawing->moment != moment || std::exchange(drawing->submitted, true)) continue;
     if (stopping_) {
-      drawing.pixels = fail(ErrorCode::Unavailable, "the server stops");
-      finished(drawing);
+      not_made.push_back(drawing);
     } else {
-      workers_.post([&drawing] { drawing.submit(); });
+      workers_.post([&drawing = *drawing] { drawing.submit(); });
     }
+  }
+  for (const auto& drawing : not_made) {
+    drawing->pixels = fail(ErrorCode::Unavailable, "the server stops");
+    finished(*drawing);
   }
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <cmath>
-#include <cstdlib>
 #include <utility>
 
 #include "server/stage/player.hpp"
@@ -16,6 +15,8 @@ constexpr double kKeyEveryUs = 1e6;
 constexpr ClockUs kKeySpacingUs = 250'000;
 /// How long something stands still before it is worth a better picture.
 constexpr ClockUs kRefineAfterUs = 500'000;
+/// Packets that may wait for the sinks' thread: an eighth of a second at 60 a second, which a busy thread makes up for.
+constexpr std::size_t kMostUndelivered = 8;
 
 std::int64_t media_us(double time_s) noexcept { return std::llround(time_s * 1e6); }
 
@@ -46,8 +47,15 @@ bool Producer::follow(const stage::SceneViewPtr& view) {
   return true;
 }
 
-void Producer::retune(StreamKey key) {
+void Producer::retune(StreamKey key, std::shared_ptr<StreamMeter> meter) {
   key_ = std::move(key);
+  if (meter != environment_.meter) {
+    const auto readers = static_cast<std::int64_t>(readers_.size());
+    tweend::add(environment_.meter->readers, -readers);
+    tweend::add(meter->readers, readers);
+    environment_.meter = std::move(meter);
+    pool_ = std::make_shared<PacketPool>(environment_.meter);
+  }
   content_->look_from(key_);
   begun_serial_ = 0;  // nothing shows it so yet
   last_reading_ = reading_before(steady_now_us());
@@ -56,22 +64,29 @@ void Producer::retune(StreamKey key) {
 }
 
 bool Producer::serves_only(const PacketSink* sink, std::uint32_t stream) const noexcept {
-  if (subscriptions_->size() != 1) return false;
-  const Subscription& only = subscriptions_->front();
-  return only.stream == stream && only.sink.lock().get() == sink;
+  return readers_.size() == 1 && readers_[0].sink == sink && readers_[0].subscription.stream == stream;
 }
 
-void Producer::replace(Subscriptions next) {
-  environment_.meter->readers = static_cast<std::int64_t>(next.size());
-  subscriptions_ = std::make_shared<const Subscriptions>(std::move(next));
+void Producer::readers_changed(std::int64_t by) {
+  tweend::add(environment_.meter->readers, by);
+  subscriptions_.reset();
+}
+
+const std::shared_ptr<const Subscriptions>& Producer::subscriptions() {
+  if (!subscriptions_) {
+    Subscriptions list;
+    list.reserve(readers_.size());
+    for (const Reader& reader : readers_) list.push_back(reader.subscription);
+    subscriptions_ = std::make_shared<const Subscriptions>(std::move(list));
+  }
+  return subscriptions_;
 }
 
 void Producer::add(Subscription subscription) {
-  Subscriptions next = *subscriptions_;
-  next.push_back(subscription);
-  replace(std::move(next));
+  readers_.push_back({subscription.sink.lock().get(), subscription});
+  readers_changed(1);
   if (latest_ && (latest_->header.flags & protocol::kFlagKey) != 0) {  // whatever has changed since is on its way to all
-    environment_.mailbox.put({latest_, std::make_shared<const Subscriptions>(Subscriptions{std::move(subscription)})});
+    environment_.mailbox.put({latest_, std::make_shared<const Subscriptions>(Subscriptions{std::move(subscription)}), true});
   } else if (!settled_) {
     key_wanted_ = true;
   }
@@ -84,17 +99,19 @@ void Producer::request_key() {
 }
 
 void Producer::remove(const PacketSink* sink, std::uint32_t stream) {
-  Subscriptions next = *subscriptions_;
-  std::erase_if(next, [&](const Subscription& s) {
-    const auto held = s.sink.lock();
-    return !held || (held.get() == sink && s.stream == stream);
+  // Whoever takes a subscription back still holds the sink: no other has its address.
+  const auto at = std::find_if(readers_.begin(), readers_.end(), [&](const Reader& reader) {
+    return reader.sink == sink && reader.subscription.stream == stream;
   });
-  replace(std::move(next));
+  if (at == readers_.end()) return;
+  *at = std::move(readers_.back());
+  readers_.pop_back();
+  readers_changed(-1);
 }
 
 void Producer::end(const std::string& reason) {
   newest_.reset();
-  environment_.mailbox.call([to = subscriptions_, reason] {
+  environment_.mailbox.call([to = subscriptions(), reason] {
     for (const Subscription& s : *to) {
       if (const auto sink = s.sink.lock()) sink->ended(s.stream, reason);
     }
@@ -104,7 +121,8 @@ void Producer::end(const std::string& reason) {
 
 void Producer::stop() {
   timer_.cancel();
-  replace({});
+  readers_changed(-static_cast<std::int64_t>(readers_.size()));
+  readers_.clear();
 }
 
 double Producer::period_us() const noexcept {
@@ -157,10 +175,23 @@ void Producer::wait_until(ClockUs at_us) {
 }
 
 void Producer::tick(ClockUs at_us) {
+  if (sinks_are_behind()) return miss();
   const ClockUs now_us = steady_now_us();
   // The machine was away: show now, not then. And never a playhead at a reading before it was set.
   if (static_cast<double>(now_us - at_us) >= 1e6 / key_.rate) at_us = now_us;
   begin(std::max(at_us, content_->earliest_us()));
+}
+
+bool Producer::sinks_are_behind() const noexcept {
+  return undelivered_ >= kMostUndelivered && environment_.mailbox.drains() == drains_;
+}
+
+void Producer::miss() {
+  // The next reading even for what would be shown at once: while the sinks' thread stands still, asking again costs little.
+  // Nothing was begun, so nothing is missing from the packets' numbers.
+  tweend::add(environment_.metrics.ticks_missed_total);
+  last_reading_ = reading_before(steady_now_us()) + 1;
+  wait_until(static_cast<ClockUs>(static_cast<double>(last_reading_) * period_us()));
 }
 
 bool Producer::needs_key(bool jumped, bool moving, ClockUs at_us) const noexcept {
@@ -202,13 +233,6 @@ void Producer::begin(ClockUs at_us) {
   content_->begin(std::move(packet), at_us + static_cast<ClockUs>(std::min(1e6 / key_.rate, 1e6)));
 }
 
-void Producer::measure(ClockUs at_us) {
-  const ClockUs delay_us = std::max<ClockUs>(0, steady_now_us() - at_us);
-  environment_.metrics.packet_delay_seconds.observe(delay_us);
-  if (last_delay_us_) environment_.metrics.packet_jitter_seconds.observe(std::abs(delay_us - *last_delay_us_));
-  last_delay_us_ = delay_us;
-}
-
 void Producer::ready() {
   busy_ = false;
   schedule();
@@ -225,12 +249,17 @@ void Producer::made(Result<NewPacketPtr> packet) {
   protocol::PacketHeader& header = (*packet)->header;
   header.payload_bytes = static_cast<std::uint32_t>((*packet)->payload.bytes().size());
   delivered_serial_ = (*packet)->view_serial;
-  measure(header.server_us);
   latest_ = std::move(*packet);
   tweend::add(environment_.metrics.packets_produced_total);
   tweend::add(environment_.meter->produced);
-  environment_.mailbox.put({latest_, subscriptions_});
+  put({latest_, subscriptions()});
   environment_.progressed();
+}
+
+void Producer::put(Delivery delivery) {
+  const std::uint64_t drains = environment_.mailbox.drains();
+  undelivered_ = std::exchange(drains_, drains) == drains ? undelivered_ + 1 : 1;
+  environment_.mailbox.put(std::move(delivery));
 }
 
 }  // namespace tweend::streams

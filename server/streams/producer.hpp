@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,9 +22,10 @@ namespace tweend::streams {
 ///
 /// Lives on the stage's strand; the content is made elsewhere, in steps, one packet at a time in each. While it moves, packets
 /// leave on a grid of readings that all producers of a rate share (k / rate by the clock, so that lateness never adds up and
-/// what two of them need of a moment is made once); a reading at which the first step is still at work is missed, never queued.
-/// While nothing changes, nothing is sent: the packet that shows a final state carries flag 4, and the timer sleeps. On a lower
-/// rung of the ladder that packet comes half a second later, as good as was asked for.
+/// what two of them need of a moment is made once); a reading at which the first step is still at work, or packets pile up
+/// since the sinks' thread takes none, is missed, never queued. While nothing changes, nothing is sent: the packet that shows a
+/// final state carries flag 4, and the timer sleeps. On a lower rung of the ladder that packet comes half a second later, as
+/// good as was asked for.
 ///
 /// Where packets need the ones before them, keys come with the first packet, jumps, final states, once a second, and soon after
 /// somebody needs one.
@@ -44,7 +44,7 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
   Producer(StreamKey key, std::uint64_t source, Environment environment, const MakeContent& make_content);
 
   [[nodiscard]] const StreamKey& key() const noexcept { return key_; }
-  [[nodiscard]] bool idle() const noexcept { return subscriptions_->empty(); }
+  [[nodiscard]] bool idle() const noexcept { return readers_.empty(); }
   /// Whether this stream of this sink is the only one.
   [[nodiscard]] bool serves_only(const PacketSink* sink, std::uint32_t stream) const noexcept;
   /// The newest view that a delivered packet shows.
@@ -60,7 +60,8 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
   /// quarter of a second apart.
   void request_key();
   /// Goes on with another rate or camera.
-  void retune(StreamKey key);
+  /// @param meter  what packets are counted by from now on
+  void retune(StreamKey key, std::shared_ptr<StreamMeter> meter);
   /// Tells all subscribers and forgets them.
   void end(const std::string& reason);
   /// What follow() said no to, for the clients.
@@ -82,18 +83,31 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
   [[nodiscard]] ClockUs next_reading_us(ClockUs now_us);
   void wait_until(ClockUs at_us);
   void tick(ClockUs at_us);
+  void miss();
   void begin(ClockUs at_us);
-  void replace(Subscriptions next);
-  void measure(ClockUs at_us);
+  void put(Delivery delivery);
+  void readers_changed(std::int64_t by);
+  [[nodiscard]] const std::shared_ptr<const Subscriptions>& subscriptions();
+  /// Whether packets wait for the sinks' thread, and so many that another would be one more that nobody sees in time.
+  [[nodiscard]] bool sinks_are_behind() const noexcept;
 
   StreamKey key_;
   const std::uint64_t source_;  ///< tells this producer's packets from others'
   Environment environment_;
   const std::shared_ptr<Content> content_;
   boost::asio::steady_timer timer_;
-  const std::shared_ptr<PacketPool> pool_;
-  // Replaced as a whole, so that a delivery under way keeps the list it began with.
-  std::shared_ptr<const Subscriptions> subscriptions_ = std::make_shared<const Subscriptions>();
+  std::shared_ptr<PacketPool> pool_;
+  /// A subscription, and what its sink is told apart by without asking whether it is still there.
+  struct Reader {
+    const PacketSink* sink;
+    Subscription subscription;
+  };
+  std::vector<Reader> readers_;
+  // What deliveries share: the list as it was at the last one, so that many who come or leave at once cost one list. Null: it
+  // has changed since.
+  std::shared_ptr<const Subscriptions> subscriptions_;
+  std::uint64_t drains_ = 0;     ///< of the mailbox, at the last put()
+  std::size_t undelivered_ = 0;  ///< packets put since the mailbox was emptied last, by then
   stage::SceneViewPtr view_;
   PacketPtr latest_;
   std::shared_ptr<Producer> busy_self_;  ///< set while a packet is in the making
@@ -106,8 +120,7 @@ class Producer final : public ContentOwner, public std::enable_shared_from_this<
   std::uint32_t sequence_ = 0;
   ClockUs last_at_us_ = 0;
   ClockUs last_key_us_ = 0;
-  std::optional<ClockUs> last_delay_us_;  ///< from its reading to its being handed over, of the packet before
-  std::int64_t last_reading_ = 0;         ///< of the grid, by number
+  std::int64_t last_reading_ = 0;  ///< of the grid, by number
   bool key_wanted_ = false;
   bool settled_ = false;  ///< what the last packet begun shows stays, until something changes
   bool refined_ = false;  ///< and it is as good as was asked for

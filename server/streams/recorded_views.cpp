@@ -38,17 +38,24 @@ bool RecordedViews::is_seen(ClockUs from_us, ClockUs to_us) const noexcept {
   return reading(picture) < to_us;
 }
 
-void RecordedViews::add(const stage::SceneViewPtr& view, ClockUs now_us) {
+bool RecordedViews::add(const stage::SceneViewPtr& view, ClockUs now_us) {
   const std::lock_guard lock(mutex_);
-  if (last_us_) return;
+  if (last_us_ || given_up_) return true;
   const Stretch& newest = stretches_.back();
   const ClockUs from_us = std::max(newest.from_us, holds_from_us(*newest.view, *view, now_us));
   if (!is_seen(newest.from_us, from_us)) {
     // It goes on from where the one before began: no picture looks there.
     stretches_.back().view = view;
-  } else {
-    stretches_.push_back({from_us, view});
+    return true;
   }
+  if (stretches_.size() == kMostKept) return false;
+  stretches_.push_back({from_us, view});
+  return true;
+}
+
+void RecordedViews::settled(ClockUs until_us) {
+  const std::lock_guard lock(mutex_);
+  settled_us_ = until_us;
 }
 
 void RecordedViews::end(ClockUs last_us) {
@@ -61,16 +68,14 @@ void RecordedViews::give_up() {
   given_up_ = true;
 }
 
-FilmSource::Next RecordedViews::next(stage::Show& out) { return next(out, steady_now_us()); }
-
-FilmSource::Next RecordedViews::next(stage::Show& out, ClockUs now_us) {
+FilmSource::Next RecordedViews::next(stage::Show& out) {
   stage::SceneViewPtr view;
   ClockUs at_us = 0;
   {
     const std::lock_guard lock(mutex_);
     at_us = reading(next_);
     if (given_up_ || next_ == most_ || (last_us_ && at_us > *last_us_)) return Next::End;
-    if (!last_us_ && at_us + kSettledUs > now_us) return Next::Later;
+    if (!last_us_ && at_us >= settled_us_) return Next::Later;
     while (stretches_.size() > 1 && stretches_[1].from_us <= at_us) stretches_.pop_front();
     view = stretches_.front().view;
     ++next_;

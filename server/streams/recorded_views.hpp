@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <deque>
+#include <limits>
 #include <mutex>
 #include <optional>
 
@@ -16,27 +17,29 @@ namespace tweend::streams {
 [[nodiscard]] ClockUs holds_from_us(const stage::SceneView& before, const stage::SceneView& next, ClockUs now_us) noexcept;
 
 /// What a scene shows at start + k / fps, k = 0, 1, …: the views that were published, each with the reading from which it
-/// holds. Of those between two pictures only the last is kept. Any thread.
+/// holds. Of those between two pictures only the last is kept. A picture is known once its reading is settled: when nobody can
+/// act for it any more. Any thread.
 class RecordedViews final : public FilmSource {
  public:
-  /// How long after a reading what is shown then is known for certain: whoever acts for a reading has done so by then.
-  static constexpr ClockUs kSettledUs = 100'000;
+  /// Views that may wait for their pictures: a minute of changes at every picture, and at most so many copies of the players.
+  static constexpr std::size_t kMostKept = 5'000;
 
   /// @param fps   at least kSlowestFilm: less is taken for that
   /// @param most  pictures
   RecordedViews(stage::SceneViewPtr view, ClockUs start_us, double fps, std::size_t most);
 
   /// From the reading `now_us` on, or earlier where a player was turned then.
-  void add(const stage::SceneViewPtr& view, ClockUs now_us);
-  /// No picture of a later reading.
+  /// @return false: kMostKept wait; nothing has changed
+  [[nodiscard]] bool add(const stage::SceneViewPtr& view, ClockUs now_us);
+  /// What is shown before this reading is known, and will not change.
+  void settled(ClockUs until_us);
+  /// No picture of a later reading. What is shown up to then is known.
   void end(ClockUs last_us);
   /// No further picture at all.
   void give_up();
 
   // FilmSource
   [[nodiscard]] Next next(stage::Show& out) override;
-  /// The same at a reading of the clock.
-  [[nodiscard]] Next next(stage::Show& out, ClockUs now_us);
 
   /// How many views are kept.
   [[nodiscard]] std::size_t kept() const;
@@ -56,6 +59,7 @@ class RecordedViews final : public FilmSource {
   mutable std::mutex mutex_;
   std::deque<Stretch> stretches_;  ///< in order of time; never empty
   std::size_t next_ = 0;
+  ClockUs settled_us_ = std::numeric_limits<ClockUs>::min();
   std::optional<ClockUs> last_us_;
   bool given_up_ = false;
 };

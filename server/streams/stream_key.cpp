@@ -22,16 +22,17 @@ std::string labels_of(const VerticesSpec& vertices) {
 }
 
 std::string labels_of(const FramesSpec& frames) {
-  return fmt::format(R"(kind="frames",actor="{}",encoding="{}",width="{}",height="{}",rung="{}")", frames.actor,
-                     name_of(frames.encoding, std::array{"jpeg", "png", "h264", "rgba"}), frames.size.width, frames.size.height,
-                     frames.rung);
+  return fmt::format(R"(kind="frames",actor="{}",encoding="{}",width="{}",height="{}",quality="{}",bitrate="{}",rung="{}")",
+                     frames.actor, name_of(frames.encoding, std::array{"jpeg", "png", "h264", "rgba"}), frames.size.width,
+                     frames.size.height, frames.quality, frames.bit_rate, frames.rung);
 }
 
 }  // namespace
 
 std::string labels_of(const StreamKey& key) {
   // Names have no characters that would have to be escaped (docs/PROTOCOL.md, section 3).
-  return fmt::format(R"(scene="{}",{})", key.scene, std::visit([](const auto& what) { return labels_of(what); }, key.what));
+  return fmt::format(R"(scene="{}",{},rate="{}")", key.scene,
+                     std::visit([](const auto& what) { return labels_of(what); }, key.what), key.rate);
 }
 
 bool same_but_view(const StreamKey& a, const StreamKey& b) {

@@ -50,7 +50,8 @@ struct StreamKey {
   bool operator==(const StreamKey&) const = default;
 };
 
-/// What tells a producer apart for whoever reads its figures: Prometheus labels without braces.
+/// What tells streams apart for whoever reads their figures: all of the key but the camera, which has no end of values, as
+/// Prometheus labels without braces.
 [[nodiscard]] std::string labels_of(const StreamKey& key);
 
 /// Whether a producer of one can be turned into a producer of the other: only rate (not of H.264) and camera differ.

@@ -26,11 +26,14 @@ constexpr std::array<Row, 5> kRows{{
 
 }  // namespace
 
-std::shared_ptr<StreamMeter> StreamMeters::add(std::string labels) {
-  auto meter = std::make_shared<StreamMeter>();
-  meter->labels = std::move(labels);
+std::shared_ptr<StreamMeter> StreamMeters::meter(std::string labels) {
   const std::lock_guard lock(mutex_);
   std::erase_if(meters_, [](const auto& m) { return m.expired(); });
+  for (const auto& weak : meters_) {
+    if (auto held = weak.lock(); held && held->labels == labels) return held;
+  }
+  auto meter = std::make_shared<StreamMeter>();
+  meter->labels = std::move(labels);
   meters_.push_back(meter);
   return meter;
 }

@@ -9,10 +9,11 @@
 
 namespace tweend::streams {
 
-/// What has become of one producer's packets. Any thread may count; a packet knows its meter.
+/// What has become of the packets of one kind of stream: of all producers with these labels. Any thread may count; a packet
+/// knows its meter.
 struct StreamMeter {
   using Value = std::atomic<std::int64_t>;
-  std::string labels;  ///< what tells the producer apart, as Prometheus labels without braces
+  std::string labels;  ///< what tells the streams apart, as Prometheus labels without braces
   Value readers{0};
   Value produced{0};
   Value sent{0};     ///< packets handed to sockets
@@ -20,10 +21,11 @@ struct StreamMeter {
   Value queued{0};   ///< packets that wait for their readers now
 };
 
-/// The meters of all producers there are. Safe from any thread.
+/// The meters of all producers there are; once there is none of them, its streams count from 0 again. Safe from any thread.
 class StreamMeters {
  public:
-  [[nodiscard]] std::shared_ptr<StreamMeter> add(std::string labels);
+  /// The meter with these labels; a new one where there is none.
+  [[nodiscard]] std::shared_ptr<StreamMeter> meter(std::string labels);
 
   struct Reading {
     std::string name;  ///< with labels, as in the text

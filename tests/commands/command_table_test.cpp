@@ -81,8 +81,8 @@ TEST(CommandTable, EditsTakeRevisionAndRetryKey) {
 // Section 8: view describes, samples, streams and listens; admin makes and removes scenes, and exports; the rest is control.
 TEST(CommandTable, RolesAreThoseOfTheProtocolPage) {
   for (const Command& c : command_table()) {
-    const bool admin = c.name == "scene.create" || c.name == "scene.remove" || c.name == "asset.export" ||
-                       c.name == "record.start" || c.name == "record.stop";
+    const bool admin =
+        c.name == "scene.create" || c.name == "scene.remove" || c.name == "asset.export" || c.name.starts_with("record.");
     const bool changes = c.is_edit() || c.shape == Shape::Players || c.name == "schedule.cancel";
     EXPECT_EQ(c.role, admin ? Role::Admin : changes ? Role::Control : Role::View) << c.name;
   }
@@ -177,7 +177,8 @@ TEST(CommandTable, EveryParameterStandsOnTheProtocolPage) {
 TEST(CommandTable, EachRoleIsThatOfSectionEight) {
   const std::map<std::string_view, Role> exceptions{{"scene.create", Role::Admin}, {"scene.remove", Role::Admin},
                                                     {"asset.export", Role::Admin}, {"store.backup", Role::Admin},
-                                                    {"record.start", Role::Admin}, {"record.stop", Role::Admin}};
+                                                    {"record.start", Role::Admin}, {"record.stop", Role::Admin},
+                                                    {"record.list", Role::Admin}};
   const std::set<std::string_view> view_families{"server", "rpc", "stream", "events"};
   const std::set<std::string_view> view_verbs{"list", "describe", "get", "sample", "render"};
   for (const Command& c : command_table()) {

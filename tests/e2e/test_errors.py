@@ -19,7 +19,7 @@ GOOD = {
     "playback.queue": {"clips": [{"clip": "second"}]}, "marker.add": {"time": 1, "name": "here"}, "marker.remove": {"marker": 1},
     "marker.list": {}, "layer.set": {"layer": "new", "clip": "second"}, "layer.remove": {"layer": "top"}, "schedule.list": {},
     "schedule.cancel": {"scheduled": 1}, "asset.export": {"format": "glb", "name": "out.glb"},
-    "record.start": {"name": "out.mp4", "width": 16, "height": 16}, "record.stop": {"record": 1},
+    "record.start": {"name": "out.mp4", "width": 16, "height": 16}, "record.stop": {"record": 1}, "record.list": {},
 }
 # None of these is good for a parameter of another type.
 SAMPLES = {"string": "¿", "number": 1.5, "boolean": True, "array": [[]], "object": {"¿": 1}}

@@ -146,6 +146,17 @@ TEST_F(Frames, ShowTheSameInEveryEncoding) {
   }
 }
 
+// Packets that wait are counted by their lengths: what a compressed picture might have taken is no room of its packet.
+TEST_F(Frames, TakeTheMemoryOfTheirBytesAlone) {
+  std::uint32_t stream = 1;
+  for (const FrameEncoding encoding : {FrameEncoding::Jpeg, FrameEncoding::Png, FrameEncoding::H264}) {
+    subscribe(frames_of(scene_, encoding), stream);
+    const PacketPtr packet = sink_->wait_for(stream++, 1)[0];
+    EXPECT_GT(packet->header.payload_bytes, 0U);
+    EXPECT_EQ(packet->payload.capacity(), packet->header.payload_bytes);
+  }
+}
+
 TEST_F(Frames, CarryTheMediaTimeOfTheActorThatIsNamed) {
   s_.stage.act(seek_to(1.5), "other", scene_);
   StreamKey key = frames_of(scene_);

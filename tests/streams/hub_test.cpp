@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/streams/streaming.hpp"
+#include "tests/support/allocations.hpp"
 
 namespace tweend::streams {
 namespace {
@@ -140,6 +141,27 @@ TEST(Hub, OutlivesASinkThatWentWithoutAWord) {
   EXPECT_EQ(producers(s), 1);
   s.unsubscribe(kSquare, 1);
   EXPECT_EQ(producers(s), 0);
+}
+
+// A crowd that is reset leaves at once, and the strand carries out every leave.
+TEST(Hub, TakesNoMemoryForAReaderWhoLeaves) {
+  Streaming s(two_scenes());
+  constexpr std::uint32_t kReaders = 1'000;
+  s.subscribe(kSquare, 0);
+  s.sink->wait_for(0, 1);
+  std::size_t taken = SIZE_MAX;
+  s.stage->post([&] {
+    for (std::uint32_t i = 1; i <= kReaders; ++i) s.hub.subscribe(kSquare, {s.sink, i});
+    const std::size_t before = test::allocations();
+    for (std::uint32_t i = 1; i <= kReaders; ++i) s.hub.unsubscribe(kSquare, s.sink.get(), i);
+    taken = test::allocations() - before;
+  });
+  EXPECT_EQ(producers(s), 1);
+  EXPECT_EQ(taken, 0U);
+  const std::size_t packets = s.sink->packets(1).size();
+  s.stage.act(seek_to(1.0));
+  s.sink->wait_until(0, [](const Packet& p) { return p.header.media_us == 1'000'000; });
+  EXPECT_EQ(s.sink->packets(1).size(), packets) << "who left is sent nothing more";
 }
 
 TEST(HubEnd, OfAStreamWhoseActorIsNotThere) {
@@ -305,6 +327,23 @@ TEST(HubAfterDelivery, DoesNotWaitForASlowViewer) {
   const auto seen = after_delivery(s, answer.view, {1, 2}).get();
   EXPECT_EQ(seen[0].size(), 1U);
   EXPECT_EQ(seen[1].back()->header.media_us, 500'000);
+}
+
+TEST(HubAfterDelivery, DoesNotWaitForAViewerWhoBecameSlow) {
+  Streaming s(two_scenes(), 1);
+  const StreamKey slow = test::vertices_of("main", "square", 0.01);
+  s.subscribe(kSquare, 1);
+  s.sink->wait_for(1, 1);
+  std::promise<void> go;  // the only worker waits for it: nothing is delivered
+  s.workers.post([&go] { go.get_future().wait(); });
+  auto told = after_delivery(s, s.stage.act(seek_to(0.5)).view, {});
+  s.stage->post([&] { s.hub.retune(kSquare, slow, {s.sink, 1}); });
+  s.settle();
+  EXPECT_EQ(told.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  go.set_value();
+  told.get();
+  s.unsubscribe(slow, 1);
+  s.settle();
 }
 
 TEST(HubAfterDelivery, ComesInTheOrderOfTheViews) {

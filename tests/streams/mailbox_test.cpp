@@ -44,8 +44,9 @@ struct Letters {
 };
 
 TEST(Mailbox, HandsOverOnlyOnTheOtherThread) {
+  Metrics metrics;
   std::vector<Task> posted;
-  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); }, metrics);
   const Letters letters;
   mailbox.put({letters.packet(1), letters.to});
   EXPECT_TRUE(letters.sink->sequences.empty());
@@ -55,8 +56,9 @@ TEST(Mailbox, HandsOverOnlyOnTheOtherThread) {
 }
 
 TEST(Mailbox, WakesTheOtherThreadOnceForAllThatWait) {
+  Metrics metrics;
   std::vector<Task> posted;
-  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); }, metrics);
   const Letters letters;
   for (std::uint32_t i = 0; i < 5; ++i) mailbox.put({letters.packet(i), letters.to});
   ASSERT_EQ(posted.size(), 1U);
@@ -69,8 +71,9 @@ TEST(Mailbox, WakesTheOtherThreadOnceForAllThatWait) {
 }
 
 TEST(Mailbox, KeepsCallsInTheirPlaceBetweenPackets) {
+  Metrics metrics;
   std::vector<Task> posted;
-  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); }, metrics);
   const Letters letters;
   mailbox.put({letters.packet(1), letters.to});
   mailbox.call([&] { letters.sink->sequences.push_back(1000); });
@@ -80,8 +83,9 @@ TEST(Mailbox, KeepsCallsInTheirPlaceBetweenPackets) {
 }
 
 TEST(Mailbox, TakesMoreWhileItIsEmptied) {
+  Metrics metrics;
   std::vector<Task> posted;
-  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); }, metrics);
   const Letters letters;
   mailbox.call([&] { mailbox.put({letters.packet(1), letters.to}); });
   posted[0]();
@@ -91,8 +95,9 @@ TEST(Mailbox, TakesMoreWhileItIsEmptied) {
 }
 
 TEST(Mailbox, FlushesEachSinkOnceAfterAllThatItIsOffered) {
+  Metrics metrics;
   Task waiting;
-  Mailbox mailbox([&](Task task) { waiting = std::move(task); });
+  Mailbox mailbox([&](Task task) { waiting = std::move(task); }, metrics);
   const Letters letters;
   const auto other = std::make_shared<NotingSink>();
   const auto both = std::make_shared<const Subscriptions>(Subscriptions{{other, 1}, {letters.sink, 2}});
@@ -115,8 +120,9 @@ TEST(Mailbox, FlushesEachSinkOnceAfterAllThatItIsOffered) {
 }
 
 TEST(Mailbox, PassesOverSinksThatAreGone) {
+  Metrics metrics;
   std::vector<Task> posted;
-  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); }, metrics);
   const Letters letters;
   auto gone = std::make_shared<NotingSink>();
   const auto to = std::make_shared<const Subscriptions>(Subscriptions{{gone, 1}, {letters.sink, 2}});
@@ -127,8 +133,9 @@ TEST(Mailbox, PassesOverSinksThatAreGone) {
 }
 
 TEST(Mailbox, LetsGoOfPacketsThatWereHandedOver) {
+  Metrics metrics;
   std::vector<Task> posted;
-  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); });
+  Mailbox mailbox([&](Task task) { posted.push_back(std::move(task)); }, metrics);
   const Letters letters;
   PacketPtr packet = letters.packet(1);
   const Packet* const address = packet.get();
@@ -138,9 +145,51 @@ TEST(Mailbox, LetsGoOfPacketsThatWereHandedOver) {
   EXPECT_EQ(letters.pool->take().get(), address) << "it has come home";
 }
 
-TEST(Mailbox, TakesNoMemoryForAPacketOnceItHasGrown) {
+TEST(Mailbox, MeasuresHowLatePacketsAreAsTheyAreHandedOver) {
+  Metrics metrics;
   Task waiting;
-  Mailbox mailbox([&](Task task) { waiting = std::move(task); });
+  Mailbox mailbox([&](Task task) { waiting = std::move(task); }, metrics);
+  const Letters letters;
+  const auto delays = [&] { return metrics.packet_delay_seconds.read(); };
+  const auto put = [&](ClockUs before_us, bool again = false) {
+    const auto packet = letters.pool->take();
+    packet->header.server_us = steady_now_us() - before_us;
+    mailbox.put({packet, letters.to, again});
+  };
+  put(2'000'000);
+  EXPECT_EQ(delays().count, 0) << "it waits, and grows later";
+  waiting();
+  EXPECT_EQ(delays().count, 1);
+  EXPECT_GE(delays().sum_us, 2'000'000);
+  EXPECT_EQ(metrics.packet_jitter_seconds.read().count, 0) << "there was none before it";
+  put(60'000'000, true);  // for who came later
+  waiting();
+  EXPECT_EQ(delays().count, 1);
+  put(5'000'000);
+  waiting();
+  EXPECT_EQ(delays().count, 2);
+  EXPECT_EQ(metrics.packet_jitter_seconds.read().count, 1);
+  EXPECT_NEAR(static_cast<double>(metrics.packet_jitter_seconds.read().sum_us), 3e6, 2e6);
+}
+
+TEST(Mailbox, TellsHowOftenItWasEmptied) {
+  Metrics metrics;
+  Task waiting;
+  Mailbox mailbox([&](Task task) { waiting = std::move(task); }, metrics);
+  const Letters letters;
+  for (std::uint64_t i = 0; i < 3; ++i) {
+    mailbox.put({letters.packet(1), letters.to});
+    mailbox.put({letters.packet(2), letters.to});
+    EXPECT_EQ(mailbox.drains(), i);
+    waiting();
+  }
+  EXPECT_EQ(mailbox.drains(), 3U);
+}
+
+TEST(Mailbox, TakesNoMemoryForAPacketOnceItHasGrown) {
+  Metrics metrics;
+  Task waiting;
+  Mailbox mailbox([&](Task task) { waiting = std::move(task); }, metrics);
   const Letters letters;
   const auto run = [&](std::uint32_t rounds) {
     for (std::uint32_t i = 0; i < rounds; ++i) {
@@ -155,10 +204,11 @@ TEST(Mailbox, TakesNoMemoryForAPacketOnceItHasGrown) {
 }
 
 TEST(Mailbox, KeepsTheOrderOfEachThreadThatPuts) {
+  Metrics metrics;
   WorkerPool reader(1);
   const Letters letters;
   {
-    Mailbox mailbox([&](Task task) { reader.post(std::move(task)); });
+    Mailbox mailbox([&](Task task) { reader.post(std::move(task)); }, metrics);
     std::vector<std::thread> writers;
     for (std::uint32_t t = 0; t < 3; ++t) {
       writers.emplace_back([&, t] {

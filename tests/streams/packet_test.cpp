@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <memory>
 #include <set>
+#include <span>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -28,14 +31,18 @@ TEST(Payload, HasTheSizeAskedForAndKeepsItsMemory) {
   EXPECT_EQ(payload.resize(96).data(), memory);
 }
 
-TEST(Payload, IsCutToWhatWasWrittenAndNeverGrowsBy) {
+TEST(Payload, CopiesBytesIntoRoomForTheseAlone) {
   Payload payload;
-  payload.resize(100)[9] = std::byte{7};
-  payload.truncate(10);
-  ASSERT_EQ(payload.bytes().size(), 10U);
-  EXPECT_EQ(payload.bytes()[9], std::byte{7});
-  payload.truncate(50);
-  EXPECT_EQ(payload.bytes().size(), 10U);
+  const std::array bytes{std::byte{3}, std::byte{5}, std::byte{7}};
+  payload.assign(bytes);
+  EXPECT_TRUE(std::ranges::equal(payload.bytes(), bytes));
+  EXPECT_EQ(payload.capacity(), 3U);
+  const std::byte* const memory = payload.bytes().data();
+  payload.assign(std::span(bytes).last(2));
+  EXPECT_EQ(payload.bytes().data(), memory) << "which it keeps";
+  EXPECT_TRUE(std::ranges::equal(payload.bytes(), std::span(bytes).last(2)));
+  payload.assign({});
+  EXPECT_TRUE(payload.bytes().empty());
 }
 
 TEST(PacketPool, GivesTheSamePacketAgainWithAFreshHeader) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -21,13 +22,17 @@ using test::Streaming;
 /// Notes what it was told.
 class NotingUser final : public PictureUser {
  public:
-  void drawn(const Result<render::PixelsPtr>& pixels) override { done.set_value(pixels); }
+  void drawn(const Result<render::PixelsPtr>& pixels) override {
+    done.set_value(pixels);
+    if (then) then();
+  }
   Result<render::PixelsPtr> wait() {
     auto future = done.get_future();
     EXPECT_EQ(future.wait_for(test::kPatience), std::future_status::ready);
     return future.get();
   }
   std::promise<Result<render::PixelsPtr>> done;
+  std::function<void()> then;  ///< on the strand
 };
 
 class Desk : public testing::Test {
@@ -94,6 +99,21 @@ TEST_F(Desk, DrawsAPictureOnceForAllWhoLookTheSameWay) {
   EXPECT_EQ(test::mean_difference(test::decoded(pixels[3]->view()), alone), 0.0);
   pixels.clear();
   users.clear();
+}
+
+// Whose picture can't be made ends its stream, and with that the desk is trimmed.
+TEST_F(Desk, TellsAllWhoWaitAsItStopsThoughTheyHaveItTrimmedMeanwhile) {
+  std::vector<std::shared_ptr<NotingUser>> users;
+  on_strand([&] {
+    const MomentPtr moment = desk_.moment(s_.stage.view(), 1'000);
+    for (const std::uint32_t width : {64U, 32U, 16U, 8U}) {
+      users.push_back(order(moment, {width, 24}));
+      users.back()->then = [this] { desk_.trim(); };
+    }
+    desk_.stop();  // before the moment is composed: that is told on the strand
+  });
+  EXPECT_TRUE(users[0]->wait()) << "it was on its way";
+  for (std::size_t i = 1; i < users.size(); ++i) EXPECT_FALSE(users[i]->wait()) << i;
 }
 
 TEST_F(Desk, LetsGoOfWhatNobodyUses) {

@@ -99,7 +99,7 @@ class Keys : public testing::Test {
   Shown shown_;
   RunningStage stage_{{scene_of("main", {square_actor("square")})}};
   WorkerPool delivery_{1};
-  Mailbox mailbox_{[this](Task task) { delivery_.post(std::move(task)); }};
+  Mailbox mailbox_{[this](Task task) { delivery_.post(std::move(task)); }, stage_.metrics};
   std::shared_ptr<RecordingSink> sink_ = std::make_shared<RecordingSink>();
   std::shared_ptr<Producer> producer_;
   float next_ambient_ = 0.1F;

@@ -50,12 +50,12 @@ TEST(ProducerTiming, NeverShowsAPlayheadAtAReadingBeforeItWasSet) {
   EXPECT_NEAR(static_cast<double>(first.media_us), static_cast<double>(first.server_us - sought_us), 2.0);
 }
 
-/// Holds the only worker until it is let go.
+/// Holds the only worker of some until it is let go.
 class BusyWorker {
  public:
-  explicit BusyWorker(Streaming& s) {
+  explicit BusyWorker(WorkerPool& workers) {
     std::promise<void> started;
-    s.workers.post([this, &started] {
+    workers.post([this, &started] {
       started.set_value();
       go_.get_future().wait();
     });
@@ -74,7 +74,7 @@ TEST(ProducerTiming, MissesReadingsWhileAnEvaluationIsUnderWayAndQueuesNone) {
   constexpr ClockUs kPeriodUs = 5'000;
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 3);
-  auto busy = std::make_unique<BusyWorker>(s);
+  auto busy = std::make_unique<BusyWorker>(s.workers);
   const ClockUs from_us = steady_now_us();
   wait_until_clock_reads(from_us + 10 * kPeriodUs);
   const ClockUs until_us = steady_now_us();
@@ -97,7 +97,7 @@ TEST(ProducerTiming, CountsTheReadingsItMissed) {
   s.subscribe(test::vertices_of("main", "square", 200.0), kStream);
   s.sink->wait_for(kStream, 3);
   const std::int64_t before = s.stage.metrics.ticks_missed_total.load();
-  auto busy = std::make_unique<BusyWorker>(s);
+  auto busy = std::make_unique<BusyWorker>(s.workers);
   wait_until_clock_reads(steady_now_us() + 60'000);
   const std::size_t count = s.sink->packets(kStream).size();
   busy->let_go();
@@ -105,12 +105,50 @@ TEST(ProducerTiming, CountsTheReadingsItMissed) {
   EXPECT_GE(s.stage.metrics.ticks_missed_total.load(), before + 8) << "of some twelve, while the one before was at work";
 }
 
+// What the thread of the sinks does not take waits in memory that nothing else bounds.
+TEST(ProducerTiming, MissesReadingsWhileTheSinksTakeNothing) {
+  Streaming s({scene_of("main", {square_actor("square", {{.keys = 2, .spacing_s = 1000.0}})})});
+  s.stage.act(&Player::play);
+  s.subscribe(test::vertices_of("main", "square", 240.0), kStream);
+  s.sink->wait_for(kStream, 3);
+  auto busy = std::make_unique<BusyWorker>(s.delivery);
+  const std::size_t before = s.sink->packets(kStream).size();
+  const Metrics& metrics = s.stage.metrics;
+  const std::int64_t produced = metrics.packets_produced_total.load(), missed = metrics.ticks_missed_total.load();
+  while (metrics.ticks_missed_total.load() < missed + 30) std::this_thread::yield();
+  EXPECT_LE(metrics.packets_produced_total.load(), produced + 10) << "eight wait, and one or two were in the making";
+  busy->let_go();
+  const auto packets = s.sink->wait_for(kStream, before + 20);
+  for (std::size_t i = 0; i < packets.size(); ++i) {
+    EXPECT_EQ(packets[i]->header.sequence, i) << "what was missed was not produced, and does not count";
+  }
+}
+
+// A change after a pause is shown at once: not while the sinks take nothing, or it would be tried again and again.
+TEST(ProducerTiming, WaitsForTheNextReadingEachTimeTheSinksTakeNothing) {
+  Streaming s({scene_of("main", {square_actor("square")})});
+  constexpr double kRate = 50.0;
+  s.subscribe(test::vertices_of("main", "square", kRate), kStream);
+  s.sink->wait_for(kStream, 1);
+  auto busy = std::make_unique<BusyWorker>(s.delivery);
+  const std::int64_t before = s.stage.metrics.ticks_missed_total.load();
+  const ClockUs from_us = steady_now_us();
+  for (int i = 1; s.stage.metrics.ticks_missed_total.load() < before + 3; ++i) {
+    s.stage.act([i](Player& player, const PlayRange& range, ClockUs now_us) { player.seek(range, 0.001 * i, now_us); });
+  }
+  const double readings = static_cast<double>(steady_now_us() - from_us) * kRate / 1e6;
+  EXPECT_LE(static_cast<double>(s.stage.metrics.ticks_missed_total.load() - before), readings + 2.0);
+  busy->let_go();
+  s.stage.act([](Player& player, const PlayRange& range, ClockUs now_us) { player.seek(range, 2.0, now_us); });
+  s.sink->wait_until(kStream, [](const Packet& p) { return p.header.media_us == 2'000'000; });
+}
+
 TEST(ProducerTiming, ShowsTheNewestStateAfterABusyWorker) {
   Streaming s({scene_of("main", {square_actor("square")})}, 1);
   const StreamKey key = test::vertices_of("main", "square", 200.0);
   s.subscribe(key, kStream);
   s.sink->wait_for(kStream, 1);
-  auto busy = std::make_unique<BusyWorker>(s);
+  auto busy = std::make_unique<BusyWorker>(s.workers);
   for (const double time_s : {0.5, 1.0, 1.5}) {
     s.stage.act([time_s](Player& player, const PlayRange& range, ClockUs now_us) { player.seek(range, time_s, now_us); });
   }

@@ -38,22 +38,38 @@ TEST(RecordedViews, ShowEachPictureAtItsExactReading) {
   for (const double fps : {30.0, 29.97, 240.0, 0.5, 1e6 / 3.0}) {
     const SceneViewPtr view = view_of(scene(), 1, kStartUs);
     RecordedViews views(view, kStartUs, fps, 100);
+    views.settled(kLate);
     stage::Show show;
     for (std::size_t k = 0; k < 100; ++k) {
-      ASSERT_EQ(views.next(show, kLate), Next::Picture) << k;
+      ASSERT_EQ(views.next(show), Next::Picture) << k;
       EXPECT_EQ(show.at_us, at(k, fps));
     }
-    EXPECT_EQ(views.next(show, kLate), Next::End) << "there are no more than were allowed";
+    EXPECT_EQ(views.next(show), Next::End) << "there are no more than were allowed";
   }
 }
 
 TEST(RecordedViews, WaitUntilWhatIsShownIsKnown) {
   RecordedViews views(view_of(scene(), 1, kStartUs), kStartUs, 10.0, 100);
   stage::Show show;
-  EXPECT_EQ(views.next(show, kStartUs), Next::Later);
-  EXPECT_EQ(views.next(show, kStartUs + RecordedViews::kSettledUs - 1), Next::Later);
-  EXPECT_EQ(views.next(show, kStartUs + RecordedViews::kSettledUs), Next::Picture);
-  EXPECT_EQ(views.next(show, kStartUs + RecordedViews::kSettledUs), Next::Later);
+  EXPECT_EQ(views.next(show), Next::Later);
+  views.settled(kStartUs);
+  EXPECT_EQ(views.next(show), Next::Later) << "somebody may act for this very reading";
+  views.settled(kStartUs + 1);
+  EXPECT_EQ(views.next(show), Next::Picture);
+  EXPECT_EQ(views.next(show), Next::Later);
+}
+
+TEST(RecordedViews, TakeNoMoreThanSoManyThatWait) {
+  const model::ScenePtr document = scene();
+  RecordedViews views(view_of(document, 0, kStartUs), kStartUs, 1'000.0, 100'000);
+  const auto at_us = [](std::size_t k) { return kStartUs + 1'000 * static_cast<ClockUs>(k); };
+  for (std::size_t k = 1; k < RecordedViews::kMostKept; ++k) ASSERT_TRUE(views.add(view_of(document, k, at_us(k)), at_us(k)));
+  EXPECT_FALSE(views.add(view_of(document, 1, at_us(RecordedViews::kMostKept)), at_us(RecordedViews::kMostKept)));
+  EXPECT_EQ(views.kept(), RecordedViews::kMostKept);
+  views.settled(at_us(3));
+  stage::Show show;
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(views.next(show), Next::Picture);
+  EXPECT_TRUE(views.add(view_of(document, 1, at_us(RecordedViews::kMostKept)), at_us(RecordedViews::kMostKept)));
 }
 
 TEST(RecordedViews, EndWithTheLastReadingThatIsNotLater) {
@@ -61,15 +77,15 @@ TEST(RecordedViews, EndWithTheLastReadingThatIsNotLater) {
   views.end(kStartUs + 200'000);
   views.end(kStartUs + 900'000);  // it has ended already
   stage::Show show;
-  for (std::size_t k = 0; k <= 2; ++k) EXPECT_EQ(views.next(show, kLate), Next::Picture) << k;
-  EXPECT_EQ(views.next(show, kLate), Next::End);
+  for (std::size_t k = 0; k <= 2; ++k) EXPECT_EQ(views.next(show), Next::Picture) << k;
+  EXPECT_EQ(views.next(show), Next::End);
 }
 
 TEST(RecordedViews, GivenUpEndAtOnce) {
   RecordedViews views(view_of(scene(), 1, kStartUs), kStartUs, 10.0, 100);
   views.give_up();
   stage::Show show;
-  EXPECT_EQ(views.next(show, kLate), Next::End);
+  EXPECT_EQ(views.next(show), Next::End);
 }
 
 TEST(RecordedViews, ATurnOfThePlayersCountsFromItsReadingAndAnEditFromNow) {
@@ -95,17 +111,17 @@ TEST(RecordedViews, ShowTheNewestViewThatHolds) {
     for (std::uint64_t serial = 1; serial < 200; ++serial) {
       now_us += std::uniform_int_distribution<ClockUs>(1, 20'000)(random);
       all.emplace_back(now_us, view_of(document, serial, now_us));
-      views.add(all.back().second, now_us + 500);
+      ASSERT_TRUE(views.add(all.back().second, now_us + 500));
     }
     views.end(now_us);
     stage::Show show;
     for (std::size_t k = 0; at(k, fps) <= now_us; ++k) {
-      ASSERT_EQ(views.next(show, now_us), Next::Picture);
+      ASSERT_EQ(views.next(show), Next::Picture);
       const auto newest = std::find_if(all.rbegin(), all.rend(), [&](const auto& v) { return v.first <= at(k, fps); });
       const stage::Show want = stage::show_at(*newest->second, at(k, fps));
       ASSERT_EQ(show.actors[0].time_s, want.actors[0].time_s) << k;
     }
-    ASSERT_EQ(views.next(show, now_us), Next::End);
+    ASSERT_EQ(views.next(show), Next::End);
   }
 }
 
@@ -114,15 +130,15 @@ TEST(RecordedViews, TakeARateThatIsNoneForTheSlowest) {
   for (const double fps : {1e-13, 0.0, -1.0, kSlowestFilm}) {
     RecordedViews views(view_of(document, 0, kStartUs), kStartUs, fps, 100);
     for (ClockUs k = 1; k <= 3; ++k) {
-      views.add(view_of(document, static_cast<std::uint64_t>(k), kStartUs + 900 * k), kStartUs + 900 * k);
+      ASSERT_TRUE(views.add(view_of(document, static_cast<std::uint64_t>(k), kStartUs + 900 * k), kStartUs + 900 * k));
     }
     views.end(kStartUs + 2'000'000'000);
     stage::Show show;
     for (const ClockUs after_us : {0, 1'000'000'000, 2'000'000'000}) {
-      ASSERT_EQ(views.next(show, kLate), Next::Picture);
+      ASSERT_EQ(views.next(show), Next::Picture);
       EXPECT_EQ(show.at_us, kStartUs + after_us);
     }
-    EXPECT_EQ(views.next(show, kLate), Next::End);
+    EXPECT_EQ(views.next(show), Next::End);
   }
 }
 
@@ -130,7 +146,7 @@ TEST(RecordedViews, KeepNoMoreThanThePicturesTake) {
   const model::ScenePtr document = scene();
   RecordedViews views(view_of(document, 0, kStartUs), kStartUs, 10.0, 1'000);
   for (ClockUs k = 1; k <= 10'000; ++k) {
-    views.add(view_of(document, static_cast<std::uint64_t>(k), kStartUs + 100 * k), kStartUs + 100 * k);
+    ASSERT_TRUE(views.add(view_of(document, static_cast<std::uint64_t>(k), kStartUs + 100 * k), kStartUs + 100 * k));
   }
   // A second of it: eleven readings, and what holds now.
   EXPECT_LE(views.kept(), 12U);

@@ -88,8 +88,8 @@ class Recorders : public testing::Test {
                                      double fps = 50.0) {
     std::promise<Result<RecordingStarted>> promise;
     stage->post([&] {
-      RecordingRequest request{scene, name, fps, kSmall, test::from_above(), std::make_unique<KeptSink>(kept)};
-      promise.set_value(recorder.start(std::move(request)));
+      const auto id = recorder.reserve({scene, name, fps, kSmall, test::from_above()});
+      promise.set_value(id ? recorder.start(*id, std::make_unique<KeptSink>(kept)) : Result<RecordingStarted>(id.error()));
     });
     return promise.get_future().get();
   }
@@ -124,6 +124,12 @@ class Recorders : public testing::Test {
     EXPECT_TRUE(drawn);
     return drawn ? test::decoded(drawn->pixels->view()) : Decoded{};
   }
+  template <class Ask>
+  auto on_strand(Ask ask) {
+    std::promise<decltype(ask())> promise;
+    stage->post([&] { promise.set_value(ask()); });
+    return promise.get_future().get();
+  }
   void play() {
     stage.act([](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.play(range, now_us); });
   }
@@ -132,7 +138,7 @@ class Recorders : public testing::Test {
   test::RunningStage stage;
   WorkerPool workers{3};
   render::RenderThread renderer;
-  Recorder recorder{*stage, workers, renderer, limits};
+  Recorder recorder{*stage, workers, renderer, limits, stage.metrics};
 
  private:
   bool finished_ = false;
@@ -155,31 +161,147 @@ TEST_F(Recorders, RefuseAnUnknownSceneATakenNameAndOneTooMany) {
 }
 
 TEST_F(Recorders, LetTheSinkOfARefusedOneGoOffTheStrand) {
-  const auto kept = std::make_shared<Kept>(), refused = std::make_shared<Kept>();
-  start(kept, "a");
-  EXPECT_FALSE(try_start(refused, "a", "main"));
-  std::promise<std::thread::id> strand;
-  stage->post([&] { strand.set_value(std::this_thread::get_id()); });
+  ASSERT_TRUE(stage.wait(stage.create_later({"two", "scene.create", {}, {}})));
+  const auto id = on_strand([this] { return recorder.reserve({"two", "a", 50.0, kSmall, {}}); });
+  ASSERT_TRUE(id);
+  ASSERT_TRUE(stage.wait(stage.remove_later({"two", "scene.remove", {}, {}})));
+  const auto refused = std::make_shared<Kept>();
+  const auto started = on_strand([&] { return recorder.start(*id, std::make_unique<KeptSink>(refused)); });
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().code, ErrorCode::NotFound);
+  const std::thread::id strand = on_strand([] { return std::this_thread::get_id(); });
   std::unique_lock lock(refused->mutex);
   ASSERT_TRUE(refused->changed.wait_for(lock, test::kPatience, [&] { return refused->gone; }));
-  EXPECT_NE(refused->gone_on, strand.get_future().get());
+  EXPECT_NE(refused->gone_on, strand);
   EXPECT_FALSE(refused->finished);
+  EXPECT_EQ(stage.metrics.recordings.load(), 0);
 }
 
-TEST_F(Recorders, TellBeforeThereIsASinkWhetherTheyWouldStart) {
-  const auto may_start = [this](const std::string& name, const std::string& scene) {
-    std::promise<Status> promise;
-    stage->post([&] { promise.set_value(recorder.may_start({scene, name, 50.0, kSmall, {}, nullptr})); });
-    return promise.get_future().get();
+// Many that ask at once would each make an encoder before the first of them has begun.
+TEST_F(Recorders, KeepAPlaceAndANameWhileTheSinkIsMade) {
+  const auto reserve = [this](const std::string& name) {
+    return on_strand([&] { return recorder.reserve({"main", name, 50.0, kSmall, {}}); });
   };
-  EXPECT_TRUE(may_start("a", "main"));
-  EXPECT_EQ(may_start("a", "nowhere").error().code, ErrorCode::NotFound);
+  const auto a = reserve("a"), b = reserve("b");
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(reserve("a").error().code, ErrorCode::Conflict);
+  ASSERT_TRUE(reserve("c"));
+  const Error more = reserve("d").error();
+  EXPECT_EQ(more.code, ErrorCode::Limit);
+  EXPECT_NE(more.message.find("(1, 2, 3)"), std::string::npos) << more.message;
+  EXPECT_EQ(stop(*a).error().code, ErrorCode::NotFound) << "it has not begun";
+  EXPECT_TRUE(on_strand([this] { return recorder.list(); }).empty());
+  on_strand([&] { return recorder.release(*a), true; });
+  EXPECT_TRUE(reserve("a")) << "there was no sink for it";
+}
+
+TEST_F(Recorders, ListWhatRunsIsEndingAndHasEndedByItself) {
+  limits.recorded_pictures = 2;
+  const auto kept = std::make_shared<Kept>(), broken = std::make_shared<Kept>(), held = std::make_shared<Kept>();
+  broken->fails_at = 1;
+  held->open = false;
+  const auto list = [this] { return on_strand([this] { return recorder.list(); }); };
+  const auto until_state = [&](std::size_t i, RecordingState state) {
+    for (auto now = list();; now = list()) {
+      if (now.at(i).state == state) return now;
+      std::this_thread::yield();
+    }
+  };
+  const auto done = start(kept, "done"), failed = start(broken, "failed"), slow = start(held, "slow", 0.01);
+  EXPECT_EQ(stage.metrics.recordings.load(), 3);
+  EXPECT_EQ(list()[2].state, RecordingState::Running);
+  auto stopped = stop_later(slow.id);
+  until_state(0, RecordingState::Done);
+  until_state(1, RecordingState::Failed);
+  const auto now = until_state(2, RecordingState::Ending);
+  EXPECT_EQ(stage.metrics.recordings.load(), 1);
+  EXPECT_EQ(now[0].id, done.id);
+  EXPECT_EQ(now[0].name, "done");
+  EXPECT_EQ(now[0].scene, "main");
+  EXPECT_EQ(now[0].pictures, 2U);
+  EXPECT_EQ(now[0].start_us, done.start_us);
+  EXPECT_EQ(now[2].fps, 0.01);
+  EXPECT_EQ(now[2].pictures, 0U);
+  held->let_through();
+  ASSERT_TRUE(stopped.get());
+  EXPECT_TRUE(stop(done.id));
+  EXPECT_FALSE(stop(failed.id));
+  EXPECT_TRUE(list().empty());
+}
+
+TEST_F(Recorders, TellAllWhoStopOne) {
   const auto kept = std::make_shared<Kept>();
-  start(kept, "a");
-  EXPECT_EQ(may_start("a", "main").error().code, ErrorCode::Conflict);
-  start(kept, "b");
-  start(kept, "c");
-  EXPECT_EQ(may_start("d", "main").error().code, ErrorCode::Limit);
+  kept->open = false;
+  const auto started = start(kept);
+  auto first = stop_later(started.id), second = stop_later(started.id);
+  stage.settle();
+  EXPECT_NE(second.wait_for(std::chrono::seconds(0)), std::future_status::ready);
+  kept->let_through();
+  const auto told = first.get(), again = second.get();
+  ASSERT_TRUE(told && again);
+  EXPECT_EQ(told->pictures, again->pictures);
+}
+
+// What acts by the clock acts as of its reading, however late: no picture may be drawn before that is known.
+TEST_F(Recorders, ShowWhatActsByItselfThoughTheStrandIsLate) {
+  constexpr ClockUs kFrameUs = 20'000;
+  const auto kept = std::make_shared<Kept>();
+  const stage::SceneViewPtr before = stage.view();
+  const auto started = start(kept);
+  kept->wait_for(1);
+  const ClockUs at_us = steady_now_us() + 60'000;
+  std::promise<void> scheduled;
+  stage->schedule(
+      "main", "playback.play", {at_us},
+      [this](ClockUs as_of_us, const stage::EditDone&) {
+        const auto plays = test::RunningStage::every_player(
+            [](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.play(range, now_us); });
+        stage->carry_out("main", plays, as_of_us, [](const Result<stage::PlayersAnswer>&) {});
+      },
+      [](stage::ScheduledId, ClockUs) { return std::string(); },
+      [&scheduled](const Result<std::string>&) { scheduled.set_value(); });
+  scheduled.get_future().wait();
+  // The strand is held until long after that, and the stop comes before its timer.
+  stage->post([at_us] {
+    while (steady_now_us() < at_us + 250'000) std::this_thread::yield();
+  });
+  const auto recorded = stop(started.id);
+  ASSERT_TRUE(recorded);
+  const stage::SceneViewPtr after = stage.view();
+  ASSERT_EQ((*after->players)[0].anchor_us, at_us);
+  ASSERT_GE(started.start_us + static_cast<ClockUs>(kept->pictures.size()) * kFrameUs, at_us + 200'000);
+  for (std::size_t k = 0; k < kept->pictures.size(); ++k) {
+    const ClockUs reading_us = started.start_us + static_cast<ClockUs>(k) * kFrameUs;
+    const Decoded want = picture_at(reading_us < at_us ? before : after, reading_us);
+    EXPECT_EQ(test::mean_difference(kept->pictures[k], want), 0.0) << k;
+  }
+}
+
+TEST_F(Recorders, EndWhereMoreChangesWaitThanAreKept) {
+  const auto kept = std::make_shared<Kept>();
+  kept->open = false;
+  // So many pictures a second that each of a few changes has its own.
+  const auto started = start(kept, "a", 1e6);
+  std::promise<void> turned;
+  stage->post([&] {
+    const auto turn = test::RunningStage::every_player(
+        [](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.seek(range, 0.5, now_us); });
+    for (std::size_t i = 0; i < RecordedViews::kMostKept + 10; ++i) {
+      const ClockUs now_us = steady_now_us();
+      while (steady_now_us() < now_us + 2) {
+      }
+      stage->carry_out("main", turn, steady_now_us(), [](const Result<stage::PlayersAnswer>&) {});
+    }
+    turned.set_value();
+  });
+  turned.get_future().wait();
+  kept->let_through();
+  const auto recorded = stop(started.id);
+  ASSERT_FALSE(recorded);
+  EXPECT_EQ(recorded.error().code, ErrorCode::Limit);
+  const std::lock_guard lock(kept->mutex);
+  EXPECT_TRUE(kept->gone);
+  EXPECT_FALSE(kept->finished);
 }
 
 TEST_F(Recorders, StopOnlyWhatWasStartedAndOnce) {
