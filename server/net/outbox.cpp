@@ -47,12 +47,8 @@ void Outbox::push_after_packets(std::shared_ptr<const std::string> text) {
 void Outbox::push_raw(std::string bytes) { push_control({std::move(bytes), {}, true}); }
 
 void Outbox::drop_data() {
-  for (std::size_t i = begun_ == Begun::Data ? 1 : 0; i < data_.size(); ++i) {
-    if (data_[i].packet) continue;
-    control_bytes_ -= data_[i].word->size();
-    event_bytes_ -= data_[i].word->size();
-  }
-  data_.drop_waiting();
+  // Words are counted in both lanes alike.
+  for (auto& word : data_.drop_waiting()) control_.push_back({{}, std::move(word), false});
 }
 
 void Outbox::gather_text(const std::string& body, bool raw, Gathered& out) const noexcept {
@@ -70,7 +66,7 @@ void Outbox::gather_control(const Control& item, Gathered& out) const noexcept {
 }
 
 void Outbox::gather_data(const DataLane::Entry& entry, bool alone, Gathered& out) const noexcept {
-  out.begin_message(true, begun_ == Begun::Data && &entry == &data_[0] ? begun_bytes_ : 0);
+  out.begin_message(true, begun_ == Begun::Data && &entry == &data_.front() ? begun_bytes_ : 0);
   if (!entry.packet) return gather_text(*entry.word, false, out);
   protocol::PacketHeader header = entry.packet->header;
   header.stream = entry.stream;
@@ -92,12 +88,12 @@ void Outbox::gather_data(const DataLane::Entry& entry, bool alone, Gathered& out
 }
 
 void Outbox::gather(Gathered& out) const noexcept {
-  const std::size_t first = begun_ == Begun::Data ? 1 : 0;
   // A packet of two streams has one headroom, and so has one that is gathered twice.
   const bool alone = data_.size() == 1;
-  if (first == 1) gather_data(data_[0], alone, out);
+  auto entry = data_.entries().begin();
+  if (begun_ == Begun::Data) gather_data(*entry++, alone, out);
   for (auto item = control_.begin(); item != control_.end() && !out.full(); ++item) gather_control(*item, out);
-  for (std::size_t i = first; i < data_.size() && !out.full(); ++i) gather_data(data_[i], alone, out);
+  for (; entry != data_.entries().end() && !out.full(); ++entry) gather_data(*entry, alone, out);
 }
 
 void Outbox::pop_control() {
@@ -108,7 +104,7 @@ void Outbox::pop_control() {
 }
 
 void Outbox::pop_data(std::int64_t now_us) {
-  if (const DataLane::Entry& entry = data_[0]; !entry.packet) {
+  if (const DataLane::Entry& entry = data_.front(); !entry.packet) {
     control_bytes_ -= entry.word->size();
     event_bytes_ -= entry.word->size();
   }
@@ -130,7 +126,7 @@ void Outbox::wrote(const Gathered& gathered, std::size_t bytes, std::int64_t now
     if (!message.data) {
       pop_control();
     } else {
-      packets += data_[0].packet ? 1 : 0;
+      packets += data_.front().packet ? 1 : 0;
       pop_data(now_us);
     }
     if (i == 0) begun_ = Begun::None;

@@ -54,7 +54,7 @@ class Gathered {
 ///
 /// The control lane is bounded by its owner, who starts nothing more above kCongestedBytes and closes above kOverflowBytes; the
 /// data lane as data_lane.hpp says: 8 packets and 8 MiB a stream of the newest only (or one packet, whatever its size), 16 MiB
-/// of all streams of which every packet is wanted, each packet with 512 bytes for itself.
+/// of all streams of which every packet is wanted, each packet counted as at least 4 KiB.
 class Outbox {
  public:
   /// Above this, the conversation starts nothing more until the client has read.
@@ -74,7 +74,7 @@ class Outbox {
   /// The streams and their packets.
   [[nodiscard]] DataLane& data() noexcept { return data_; }
   [[nodiscard]] const DataLane& data() const noexcept { return data_; }
-  /// Nothing more of the data lane is sent, but for the rest of a message that has begun.
+  /// No more packets are sent, but for the rest of one that has begun. Words about them join the answers.
   void drop_data();
 
   /// What is to be written next, in its order; nothing moves yet.

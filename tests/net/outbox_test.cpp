@@ -331,19 +331,22 @@ TEST_F(OutboxTest, WritesGoOnExactlyWhereTheyStoppedAndNothingFallsInsideAPacket
   }
 }
 
-TEST_F(OutboxTest, WhatIsDroppedLeavesWhatHasBegunAndTheAnswers) {
+TEST_F(OutboxTest, WhatIsDroppedLeavesWhatHasBegunAndAllWords) {
   for (std::uint32_t stream = 1; stream <= 3; ++stream) line.data().offer(stream, make_packet(0), 0);
   line.push_after_packets(std::make_shared<const std::string>(std::string(Outbox::kOverflowBytes + 1, 'x')));
   EXPECT_TRUE(line.overflowed());
   std::string wire = write_some(line, 10);
   line.push_text("answer");
   line.drop_data();
-  EXPECT_FALSE(line.overflowed());
+  EXPECT_TRUE(line.overflowed());
   wire += drain(line);
+  EXPECT_FALSE(line.overflowed());
+  EXPECT_FALSE(line.congested());
   const auto messages = messages_in(Framing::Line, wire);
-  ASSERT_EQ(messages.size(), 2U);
+  ASSERT_EQ(messages.size(), 3U);
   EXPECT_EQ(header_in(messages[0]).stream, 1U);
   EXPECT_EQ(messages[1], "answer\n");
+  EXPECT_EQ(messages[2].size(), Outbox::kOverflowBytes + 2);
 }
 
 }  // namespace
