@@ -27,7 +27,7 @@ bool stands_alone(const PacketHeader& header) noexcept {
     case protocol::PacketKind::Pose:
       return header.encoding == protocol::kPoseF32;
     case protocol::PacketKind::Vertices:
-      return header.encoding == protocol::kVerticesF32;
+      return header.encoding != protocol::kVerticesMeshopt;
     case protocol::PacketKind::Frame:
       return header.encoding != protocol::kFrameH264;
   }

@@ -213,6 +213,8 @@ TEST_F(DataLaneTest, AnotherProducersPacketOfTheSameMomentIsNoNews) {
   lane.offer(1, at(400, 2), 0);
   EXPECT_EQ(lane.size(), 0U);
   EXPECT_EQ(skipped(), 0) << "nothing is missed";
+  lane.offer(1, make_packet({.source = 2, .server_us = 400, .encoding = protocol::kVerticesQ16}), 0);
+  EXPECT_EQ(lane.size(), 0U) << "of this encoding each packet is a key, too";
   lane.offer(1, at(501, 2, kFlagKey, 1), 0);
   EXPECT_EQ(write(), Numbers{1}) << "no gap either";
   lane.offer(1, at(501, 3, kFlagKey | kFlagLast), 0);
