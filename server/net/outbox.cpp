@@ -23,7 +23,8 @@ void Gathered::add(const void* bytes, std::size_t size) noexcept {
 }
 
 void Outbox::push_control(Control item) {
-  control_bytes_ += item.body().size();
+  if (last_said_) return;
+  control_bytes_ += item.cost();
   if (item.shared) event_bytes_ += item.body().size();
   control_.push_back(std::move(item));
 }
@@ -37,7 +38,7 @@ void Outbox::push_shared(std::shared_ptr<const std::string> text) {
 }
 
 void Outbox::push_after_packets(std::shared_ptr<const std::string> text) {
-  if (framing_ == Framing::Multipart) return;
+  if (framing_ == Framing::Multipart || last_said_) return;
   if (data_.size() == 0) return push_shared(std::move(text));
   control_bytes_ += text->size();
   event_bytes_ += text->size();
@@ -45,6 +46,13 @@ void Outbox::push_after_packets(std::shared_ptr<const std::string> text) {
 }
 
 void Outbox::push_raw(std::string bytes) { push_control({std::move(bytes), {}, true}); }
+
+void Outbox::push_last(std::string bytes) {
+  if (last_said_) return;
+  drop_data();
+  if (!bytes.empty()) push_raw(std::move(bytes));
+  last_said_ = true;
+}
 
 void Outbox::drop_data() {
   // Words are counted in both lanes alike.
@@ -98,7 +106,7 @@ void Outbox::gather(Gathered& out) const noexcept {
 
 void Outbox::pop_control() {
   const Control& item = control_.front();
-  control_bytes_ -= item.body().size();
+  control_bytes_ -= item.cost();
   if (item.shared) event_bytes_ -= item.body().size();
   control_.pop_front();
 }

@@ -68,8 +68,12 @@ class Outbox {
   void push_shared(std::shared_ptr<const std::string> text);
   /// Behind the packets that wait already.
   void push_after_packets(std::shared_ptr<const std::string> text);
-  /// Bytes that are framed already (Beast's handshake, pongs, closes), as one unit.
+  /// Bytes that are framed already (Beast's handshake and pongs), as one unit.
   void push_raw(std::string bytes);
+  /// The last word, framed already or empty: what waits in the control lane goes before it, packets are dropped, and nothing
+  /// is taken any more.
+  void push_last(std::string bytes);
+  [[nodiscard]] bool last_said() const noexcept { return last_said_; }
 
   /// The streams and their packets.
   [[nodiscard]] DataLane& data() noexcept { return data_; }
@@ -95,6 +99,8 @@ class Outbox {
     bool raw = false;
 
     [[nodiscard]] const std::string& body() const noexcept { return shared ? *shared : text; }
+    /// What it counts for. Pongs of two bytes take many times as much.
+    [[nodiscard]] std::size_t cost() const noexcept { return body().size() + (raw ? sizeof(Control) : 0); }
   };
   enum class Begun : std::uint8_t { None, Control, Data };
 
@@ -109,6 +115,7 @@ class Outbox {
   Metrics& metrics_;
   std::deque<Control> control_;
   DataLane data_;
+  bool last_said_ = false;
   Begun begun_ = Begun::None;      ///< the lane whose first message is partly written
   std::size_t begun_bytes_ = 0;    ///< of it
   std::size_t control_bytes_ = 0;  ///< waiting or being written, words about packets included
