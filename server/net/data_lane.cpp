@@ -154,7 +154,7 @@ void DataLane::drop_chain(Stream& s, std::int64_t now_us) {
     s.flags = with(s.flags, entry.flags & protocol::kFlagDiscontinuity);
     skip(s, *entry.packet);
     // Packets that came at the same moment say that this thread was busy, not that the reader is slow.
-    if (s.rungs && now_us - entry.offered_us >= kNoticeableUs) s.rungs->replaced(now_us);
+    if (s.judged(entry) && now_us - entry.offered_us >= kNoticeableUs) s.rungs->replaced(now_us);
     take_out(s.chain[i]);
   }
   s.waiting = 0;
@@ -244,7 +244,7 @@ void DataLane::pop_front(std::int64_t now_us) {
     add_to(entry.packet->meter(), &streams::StreamMeter::sent, 1);
     if (adaptive_) {
       Stream* const s = find(entry.stream);
-      if (s != nullptr && s->rungs && s->source == entry.packet->source) {
+      if (s != nullptr && s->judged(entry) && s->source == entry.packet->source) {
         s->rungs->written(now_us, now_us - entry.offered_us);
         notice_rung(*s);
       }

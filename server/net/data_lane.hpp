@@ -105,6 +105,11 @@ class DataLane {
     std::size_t waiting_bytes = 0;
     std::array<Place, kChainPackets> chain;  ///< where what waits stands, of the newest only
     std::unique_ptr<RungController> rungs;
+    /// Whether what becomes of the packet speaks of the rung: a still that was refined on a lower one is as large as at the
+    /// top.
+    [[nodiscard]] bool judged(const Entry& entry) const noexcept {
+      return rungs && (rungs->rung() == 0 || (entry.flags & protocol::kFlagLast) == 0);
+    }
     std::size_t rung = 0;  ///< where it has been told to be
   };
   using Streams = std::vector<Stream>;

@@ -414,6 +414,44 @@ TEST_F(DataLaneTest, CountsByStreamWhatBecomesOfItsPackets) {
   EXPECT_EQ(counts(), (Counts{0, 1, 1})) << "a connection that is gone has nothing waiting";
 }
 
+TEST_F(DataLaneTest, RefinedStillsDoNotSpeakOfTheRung) {
+  lane.expect(1, {.adaptive = true});
+  std::int64_t now_us = 0;
+  std::uint32_t sequence = 0;
+  const auto send = [&](std::uint8_t flags, std::int64_t waited_us) {
+    lane.offer(1, make_packet(sequence++, flags), now_us);
+    lane.pop_front(now_us += waited_us);
+  };
+  const auto rung_after = [&](int packets, std::uint8_t flags) {
+    std::optional<std::size_t> rung;
+    for (int i = 0; i < packets; ++i) {
+      send(flags, 400'000);
+      if (const auto move = lane.next_move()) rung = move->rung;
+    }
+    return rung;
+  };
+  constexpr std::uint8_t kStill = kFlagKey | kFlagLast;
+  EXPECT_EQ(rung_after(4, kStill), std::optional<std::size_t>(1)) << "at the top they are as all others";
+  lane.offer(1, make_packet(0, kFlagKey, 2), now_us);  // the new rung's producer takes over
+  lane.pop_front(now_us);
+  const auto refined = [&](int packets) {
+    for (int i = 0; i < packets; ++i) {
+      lane.offer(1, make_packet(++sequence, kStill, 2), now_us);
+      now_us += 400'000;
+      if (i % 2 == 0) lane.pop_front(now_us);
+    }
+    return lane.next_move();
+  };
+  sequence = 0;
+  EXPECT_FALSE(refined(20));
+  if (lane.size() > 0) lane.pop_front(now_us);
+  for (int i = 0; i < 3; ++i) {
+    lane.offer(1, make_packet(++sequence, kFlagKey, 2), now_us);
+    lane.pop_front(now_us += 400'000);
+  }
+  EXPECT_TRUE(lane.next_move());
+}
+
 TEST_F(DataLaneTest, TakesNoMemoryForAPacketOnceItHasGrown) {
   lane.expect(2, kEvery);
   std::vector<streams::PacketPtr> packets;
