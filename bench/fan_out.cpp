@@ -10,12 +10,14 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/post.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstring>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -263,6 +265,12 @@ double deliveries_per_s(Audience& audience, const Case& c) {
 
 /// Usage: bench_fan_out [CASE]
 int main(int count, char** arguments) {
+  const auto chosen = [&](const Case& c) { return count < 2 || std::string_view(arguments[1]) == c.name; };
+  if (std::none_of(std::begin(kCases), std::end(kCases), chosen)) {
+    std::string names;
+    for (const Case& c : kCases) names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", c.name);
+    bench::give_up(fmt::format("expected one of {}, or nothing for all of them, found \"{}\"", names, arguments[1]));
+  }
   bench::pin_to_processor(1);  // the readers
   bench::DrainingProcess drain(2 * kMostReaders);
   bench::pin_to_processor(0);  // the sender
@@ -277,7 +285,7 @@ int main(int count, char** arguments) {
               "framing", "bare send", "server", "32 wait", "deliveries/s");
   std::vector<bench::Claim> claims;
   for (const Case& c : kCases) {
-    if (count > 1 && std::string_view(arguments[1]) != c.name) continue;
+    if (!chosen(c)) continue;
     for (const Spoken& spoken : all) {
       Audience& audience = *spoken.audience;
       audience.address(c.readers, c.payload_bytes);

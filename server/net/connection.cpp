@@ -61,12 +61,12 @@ void Connection::begin(const commands::Services& services, Post to_network, comm
 }
 
 asio::awaitable<void> Connection::ready_for_more() {
-  while (open_ && !dismissed_ && !conversation_->wants_more()) {
+  while (open_ && !outbox_.last_said() && !conversation_->wants_more()) {
     co_await progress_.async_wait(asio::as_tuple(asio::use_awaitable));
   }
 }
 
-asio::awaitable<void> Connection::finish(std::chrono::seconds at_most) {
+asio::awaitable<void> Connection::finish(std::chrono::seconds at_most, std::uint16_t close_code) {
   asio::steady_timer deadline(socket_.get_executor(), at_most);
   // Shared: the timer may have expired, and its handler be on its way, when this ends for another reason.
   const auto late = std::make_shared<bool>(false);
@@ -75,6 +75,10 @@ asio::awaitable<void> Connection::finish(std::chrono::seconds at_most) {
     *late = true;
     self->progress_.cancel();
   });
+  while (open_ && !*late && !conversation_->settled()) {
+    co_await progress_.async_wait(asio::as_tuple(asio::use_awaitable));
+  }
+  if (close_code != 0) say_last(close_frame(close_code, {}));
   while (open_ && (dismissed_ || !*late) && !(conversation_->settled() && outbox_.empty())) {
     co_await progress_.async_wait(asio::as_tuple(asio::use_awaitable));
   }
@@ -130,9 +134,16 @@ void Connection::send_after_packets(std::shared_ptr<const std::string> json) {
 }
 
 void Connection::push_raw(std::string bytes) {
-  if (dismissed_ || bytes.empty()) return;  // a close is the last word
   outbox_.push_raw(std::move(bytes));
   pump();
+}
+
+void Connection::say_last(std::string frame) {
+  if (!open_ || outbox_.last_said()) return;
+  outbox_.push_last(std::move(frame));
+  if (conversation_) conversation_->close();
+  pump();
+  progress_.cancel();
 }
 
 void Connection::expect_stream(std::uint32_t stream, commands::StreamPolicy policy) { outbox_.data().expect(stream, policy); }
@@ -140,7 +151,7 @@ void Connection::expect_stream(std::uint32_t stream, commands::StreamPolicy poli
 void Connection::forget_stream(std::uint32_t stream) { outbox_.data().forget(stream); }
 
 void Connection::offer(std::uint32_t stream, const streams::PacketPtr& packet) {
-  if (!open_ || dismissed_) return;
+  if (!open_ || outbox_.last_said()) return;
   DataLane& data = outbox_.data();
   // One that was closed meanwhile is not known any more, neither here nor there.
   if (!data.knows(stream) && (!conversation_ || !conversation_->has_stream(stream))) return;
@@ -149,7 +160,7 @@ void Connection::offer(std::uint32_t stream, const streams::PacketPtr& packet) {
 
 void Connection::flush() {
   pump();
-  if (!open_ || dismissed_) return;
+  if (!open_ || outbox_.last_said()) return;
   if (full_) outbox_.data().settle_in();
   if (outbox_.data().adaptive()) move_rungs();
   if (const auto behind = outbox_.data().behind()) dismiss(*behind);
@@ -162,7 +173,7 @@ void Connection::move_rungs() {
 }
 
 void Connection::ended(std::uint32_t stream, const std::string& reason) {
-  if (!open_ || dismissed_) return;
+  if (!open_ || outbox_.last_said()) return;
   outbox_.data().end(stream);
   conversation_->stream_ended(stream, reason);
   // Of an answer that is nothing but pictures, this was the end; there is no other way to say so.
@@ -174,15 +185,10 @@ void Connection::dismiss(std::uint32_t stream) {
   const std::string reason = fmt::format("expected a reader of every packet at most {} bytes behind, found {}; connect again",
                                          DataLane::kEveryBytes, outbox_.data().every_bytes());
   outbox_.drop_data();
-  if (conversation_) {
-    if (framing_ == Framing::Line) conversation_->stream_ended(stream, reason);
-    conversation_->close();
-  }
-  if (framing_ == Framing::WebSocket) push_raw(close_frame(kTryAgainLater, reason));
+  if (conversation_ && framing_ == Framing::Line) conversation_->stream_ended(stream, reason);
   dismissed_ = true;
   end_after(kLastRead);
-  pump();
-  progress_.cancel();
+  say_last(framing_ == Framing::WebSocket ? close_frame(kTryAgainLater, reason) : std::string());
 }
 
 /// Writes until nothing waits or the socket is full. Called from within the conversation, too, and so closes nothing itself.
@@ -204,7 +210,7 @@ void Connection::pump() {
     if (bytes < next.bytes()) return await_room();
   }
   if (!open_ || !outbox_.empty()) return;
-  if (dismissed_) {
+  if (outbox_.last_said()) {
     boost::system::error_code ignored;
     socket_.shutdown(Tcp::socket::shutdown_send, ignored);  // whoever reads to the end finds one
   }
@@ -219,7 +225,9 @@ void Connection::await_room() {
     if (error && error != asio::error::operation_aborted) return self->close();
     const bool was_congested = self->outbox_.congested();
     self->flush();
-    if (was_congested && self->open_ && !self->dismissed_ && !self->outbox_.congested()) self->conversation_->resume();
+    if (!was_congested || !self->open_ || self->outbox_.congested()) return;
+    self->progress_.cancel();
+    if (self->conversation_ && !self->outbox_.last_said()) self->conversation_->resume();
   });
 }
 

@@ -4,6 +4,7 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <chrono>
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -35,11 +36,17 @@ class Connection final : public commands::Peer, public std::enable_shared_from_t
   /// Returns when the conversation takes another message, or the connection is closed.
   boost::asio::awaitable<void> ready_for_more();
   /// Answers what has been asked and writes all of it, for at most so long; then closes.
-  boost::asio::awaitable<void> finish(std::chrono::seconds at_most);
+  /// @param close_code  of a WebSocket's close frame, which is said last; 0: none is
+  boost::asio::awaitable<void> finish(std::chrono::seconds at_most, std::uint16_t close_code = 0);
   /// The server stops: nothing more is read than has arrived; whoever does not take its answers within `at_most` loses them.
   void end_soon(std::chrono::seconds at_most);
   /// Framed bytes from elsewhere (Beast's control frames).
   void push_raw(std::string bytes);
+  /// A close frame: nothing is sent behind it, so packets that wait are dropped, and whatever is under way ends unheard.
+  /// Further ones are passed over. Not from within the conversation.
+  void say_last(std::string frame);
+  /// Never expires; cancelled when more has been taken, or asked, or the connection is closed.
+  [[nodiscard]] boost::asio::steady_timer& progress() noexcept { return progress_; }
   /// Ends it now. What is under way ends unheard.
   void close();
 
@@ -72,7 +79,7 @@ class Connection final : public commands::Peer, public std::enable_shared_from_t
   Outbox outbox_;
   Tcp::socket socket_;
   std::shared_ptr<commands::Conversation> conversation_;
-  boost::asio::steady_timer progress_;  ///< never expires: cancelling it wakes whoever waits for a change
+  boost::asio::steady_timer progress_;
   boost::asio::steady_timer farewell_;  ///< runs while the server stops, or the client is to read its dismissal
 };
 

@@ -12,14 +12,14 @@ using protocol::PacketHeader;
 
 /// What has waited for less was replaced within one turn of the network thread.
 constexpr std::int64_t kNoticeableUs = 2'000;
-/// Empty entries that a lane may have at its front.
-constexpr std::size_t kMostGone = 64;
 
 bool has(std::uint8_t flags, std::uint8_t flag) noexcept { return (flags & flag) != 0; }
 
 std::uint8_t with(std::uint8_t flags, std::uint8_t more) noexcept { return static_cast<std::uint8_t>(flags | more); }
 
-std::size_t cost(const streams::Packet& packet) noexcept { return packet.payload.bytes().size() + DataLane::kPacketOverhead; }
+std::size_t cost(const streams::Packet& packet) noexcept {
+  return std::max(packet.payload.bytes().size(), DataLane::kLeastBytes);
+}
 
 /// Whether each packet of such a stream is a key: then any of them may be left out.
 bool stands_alone(const PacketHeader& header) noexcept {
@@ -27,7 +27,7 @@ bool stands_alone(const PacketHeader& header) noexcept {
     case protocol::PacketKind::Pose:
       return header.encoding == protocol::kPoseF32;
     case protocol::PacketKind::Vertices:
-      return header.encoding == protocol::kVerticesF32;
+      return header.encoding != protocol::kVerticesMeshopt;
     case protocol::PacketKind::Frame:
       return header.encoding != protocol::kFrameH264;
   }
@@ -41,6 +41,10 @@ void add_to(streams::StreamMeter* meter, streams::StreamMeter::Value streams::St
 void count(DataLane::Entry& entry) noexcept {
   entry.counted = true;
   if (entry.packet) add_to(entry.packet->meter(), &streams::StreamMeter::queued, 1);
+}
+
+void uncount(const DataLane::Entry& entry) noexcept {
+  if (entry.counted && entry.packet) add_to(entry.packet->meter(), &streams::StreamMeter::queued, -1);
 }
 
 }  // namespace
@@ -112,16 +116,27 @@ void DataLane::offer(std::uint32_t stream, const streams::PacketPtr& packet, std
     s.needs_key = true;
     return skip(s, *packet);
   }
-  append(s, packet, now_us);
+  append(s, make_place(entries_.end()), packet, now_us);
 }
 
-void DataLane::append(Stream& s, const streams::PacketPtr& packet, std::int64_t now_us) {
+DataLane::Place DataLane::make_place(Place before) {
+  if (spare_.empty()) spare_.emplace_back();
+  const Place place = spare_.begin();
+  entries_.splice(before, spare_, place);
+  return place;
+}
+
+void DataLane::append(Stream& s, Place place, const streams::PacketPtr& packet, std::int64_t now_us) {
   const std::uint8_t flags = with(packet->header.flags, std::exchange(s.flags, std::uint8_t{0}));
-  entries_.push_back({packet, {}, now_us, s.number, s.offered, flags, s.policy.every, false});
+  *place = {packet, {}, now_us, s.number, s.offered, flags, s.policy.every, false};
   s.taken = true;
+  if (s.policy.every) {
+    every_bytes_ += cost(*packet);
+  } else {
+    s.chain[s.waiting] = place;
+  }
   s.waiting += 1;
   s.waiting_bytes += cost(*packet);
-  if (s.policy.every) every_bytes_ += cost(*packet);
 }
 
 /// The packet never leaves. What came before the first that a client was sent is not missed by it.
@@ -134,36 +149,32 @@ void DataLane::skip(Stream& s, const streams::Packet& packet) {
 
 /// Skips all that waits of a stream.
 void DataLane::drop_chain(Stream& s, std::int64_t now_us) {
-  for (std::size_t i = first_waiting(); i < size() && s.waiting > 0;) {
-    const Entry& entry = at(i);
-    if (!entry.packet || entry.stream != s.number) {
-      ++i;
-      continue;
-    }
+  for (std::size_t i = 0; i < s.waiting; ++i) {
+    const Entry& entry = *s.chain[i];
     s.flags = with(s.flags, entry.flags & protocol::kFlagDiscontinuity);
     skip(s, *entry.packet);
     // Packets that came at the same moment say that this thread was busy, not that the reader is slow.
-    if (s.rungs && now_us - entry.offered_us >= kNoticeableUs) s.rungs->replaced(now_us);
-    take_out(i);
+    if (s.judged(entry) && now_us - entry.offered_us >= kNoticeableUs) s.rungs->replaced(now_us);
+    take_out(s.chain[i]);
   }
+  s.waiting = 0;
+  s.waiting_bytes = 0;
   if (s.rungs) notice_rung(s);
 }
 
 /// A key instead of all that waits, in the place of the first of it: a stream that is slow keeps its turn.
 void DataLane::replace(Stream& s, const streams::PacketPtr& packet, std::int64_t now_us) {
-  std::size_t first = first_waiting();
-  while (!at(first).packet || at(first).stream != s.number) ++first;
-  const bool counted = at(first).counted;  // what is counted stands before what is not
+  const bool counted = s.chain[0]->counted;  // what is counted stands before what is not
+  const Place place = make_place(s.chain[0]);
   drop_chain(s, now_us);
-  append(s, packet, now_us);
-  if (counted) count(entries_.back());
-  std::rotate(&at(first), &entries_.back(), &entries_.back() + 1);
+  append(s, place, packet, now_us);
+  if (counted) count(*place);
 }
 
 void DataLane::push_word(std::shared_ptr<const std::string> word) {
   Entry entry;
   entry.word = std::move(word);
-  entries_.push_back(std::move(entry));
+  *make_place(entries_.end()) = std::move(entry);
 }
 
 void DataLane::end(std::uint32_t stream) {
@@ -172,84 +183,84 @@ void DataLane::end(std::uint32_t stream) {
 }
 
 void DataLane::forget(std::uint32_t stream) {
-  for (std::size_t i = first_waiting(); i < size();) {
-    const Entry& entry = at(i);
-    if (entry.packet && entry.stream == stream) {
-      take_out(i);
-    } else {
-      ++i;
-    }
+  for (Place at = first_waiting(); at != entries_.end();) {
+    const bool its = at->packet && at->stream == stream;
+    if (its && at->every) every_bytes_ -= cost(*at->packet);
+    at = its ? take_out(at) : std::next(at);
   }
   end(stream);
 }
 
-void DataLane::drop(std::size_t from) noexcept {
-  while (size() > from) take_out(size() - 1);
-  if (from == 0) front_begun_ = false;
+std::vector<std::shared_ptr<const std::string>> DataLane::drop_waiting() {
+  std::vector<std::shared_ptr<const std::string>> words;
+  for (Place at = first_waiting(); at != entries_.end(); at = take_out(at)) {
+    if (at->word) words.push_back(std::move(at->word));
+  }
+  for (Stream& s : streams_) s.waiting = s.waiting_bytes = 0;
+  every_bytes_ = 0;
+  return words;
 }
 
-void DataLane::take_out(std::size_t index) noexcept {
-  const Entry& entry = at(index);
-  if (entry.packet) {
-    if (entry.counted) add_to(entry.packet->meter(), &streams::StreamMeter::queued, -1);
-    if (index > 0 || !front_begun_) waits_no_more(entry);
-  }
-  entries_.erase(entries_.begin() + static_cast<std::ptrdiff_t>(first_ + index));
+DataLane::~DataLane() {
+  for (const Entry& entry : entries_) uncount(entry);
+}
+
+/// @return the place after it
+DataLane::Place DataLane::take_out(Place place) noexcept {
+  uncount(*place);
+  place->packet.reset();
+  place->word.reset();
+  const Place next = std::next(place);
+  spare_.splice(spare_.begin(), entries_, place);
+  return next;
 }
 
 void DataLane::settle_in() noexcept {
   // Whatever has taken another's place is counted already: the others are the last.
-  for (std::size_t i = size(); i > 0 && !at(i - 1).counted; --i) count(at(i - 1));
+  for (auto entry = entries_.rbegin(); entry != entries_.rend() && !entry->counted; ++entry) count(*entry);
 }
 
+/// The first entry of its stream is not among those any more that something may take the place of.
 void DataLane::waits_no_more(const Entry& entry) noexcept {
   const std::size_t bytes = cost(*entry.packet);
   if (entry.every) every_bytes_ -= bytes;
-  if (Stream* const s = find(entry.stream)) {
-    s->waiting -= 1;
-    s->waiting_bytes -= bytes;
-  }
+  Stream* const s = find(entry.stream);
+  if (s == nullptr) return;
+  s->waiting -= 1;
+  s->waiting_bytes -= bytes;
+  if (!entry.every) std::copy_n(s->chain.begin() + 1, s->waiting, s->chain.begin());
 }
 
 void DataLane::begin_front() noexcept {
   if (front_begun_) return;
   front_begun_ = true;
-  if (at(0).packet) waits_no_more(at(0));
+  if (front().packet) waits_no_more(front());
 }
 
 void DataLane::pop_front(std::int64_t now_us) {
   begin_front();
-  Entry& entry = at(0);
+  const Entry& entry = front();
   if (entry.packet) {
-    streams::StreamMeter* const meter = entry.packet->meter();
-    if (entry.counted) add_to(meter, &streams::StreamMeter::queued, -1);
-    add_to(meter, &streams::StreamMeter::sent, 1);
+    add_to(entry.packet->meter(), &streams::StreamMeter::sent, 1);
     if (adaptive_) {
       Stream* const s = find(entry.stream);
-      if (s != nullptr && s->rungs && s->source == entry.packet->source) {
+      if (s != nullptr && s->judged(entry) && s->source == entry.packet->source) {
         s->rungs->written(now_us, now_us - entry.offered_us);
         notice_rung(*s);
       }
     }
   }
   front_begun_ = false;
-  entry.packet.reset();
-  entry.word.reset();
-  ++first_;
-  if (first_ == entries_.size()) {
-    entries_.clear();
-    first_ = 0;
-  } else if (first_ >= kMostGone && 2 * first_ >= entries_.size()) {
-    entries_.erase(entries_.begin(), entries_.begin() + static_cast<std::ptrdiff_t>(first_));
-    first_ = 0;
-  }
+  take_out(entries_.begin());
 }
 
 std::optional<std::uint32_t> DataLane::behind() const noexcept {
   if (every_bytes_ <= kEveryBytes) return std::nullopt;
-  const auto at = std::find_if(entries_.begin() + static_cast<std::ptrdiff_t>(first_ + first_waiting()), entries_.end(),
-                               [](const Entry& entry) { return entry.every; });
-  return at == entries_.end() ? std::optional<std::uint32_t>() : at->stream;
+  const Stream* most = nullptr;
+  for (const Stream& s : streams_) {
+    if (s.policy.every && s.waiting > 0 && (most == nullptr || s.waiting_bytes > most->waiting_bytes)) most = &s;
+  }
+  return most == nullptr ? std::optional<std::uint32_t>() : most->number;
 }
 
 std::optional<DataLane::RungMove> DataLane::next_move() {

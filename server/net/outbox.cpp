@@ -23,7 +23,8 @@ void Gathered::add(const void* bytes, std::size_t size) noexcept {
 }
 
 void Outbox::push_control(Control item) {
-  control_bytes_ += item.body().size();
+  if (last_said_) return;
+  control_bytes_ += item.cost();
   if (item.shared) event_bytes_ += item.body().size();
   control_.push_back(std::move(item));
 }
@@ -37,7 +38,7 @@ void Outbox::push_shared(std::shared_ptr<const std::string> text) {
 }
 
 void Outbox::push_after_packets(std::shared_ptr<const std::string> text) {
-  if (framing_ == Framing::Multipart) return;
+  if (framing_ == Framing::Multipart || last_said_) return;
   if (data_.size() == 0) return push_shared(std::move(text));
   control_bytes_ += text->size();
   event_bytes_ += text->size();
@@ -46,13 +47,16 @@ void Outbox::push_after_packets(std::shared_ptr<const std::string> text) {
 
 void Outbox::push_raw(std::string bytes) { push_control({std::move(bytes), {}, true}); }
 
+void Outbox::push_last(std::string bytes) {
+  if (last_said_) return;
+  drop_data();
+  if (!bytes.empty()) push_raw(std::move(bytes));
+  last_said_ = true;
+}
+
 void Outbox::drop_data() {
-  for (std::size_t i = begun_ == Begun::Data ? 1 : 0; i < data_.size(); ++i) {
-    if (data_[i].packet) continue;
-    control_bytes_ -= data_[i].word->size();
-    event_bytes_ -= data_[i].word->size();
-  }
-  data_.drop_waiting();
+  // Words are counted in both lanes alike.
+  for (auto& word : data_.drop_waiting()) control_.push_back({{}, std::move(word), false});
 }
 
 void Outbox::gather_text(const std::string& body, bool raw, Gathered& out) const noexcept {
@@ -70,7 +74,7 @@ void Outbox::gather_control(const Control& item, Gathered& out) const noexcept {
 }
 
 void Outbox::gather_data(const DataLane::Entry& entry, bool alone, Gathered& out) const noexcept {
-  out.begin_message(true, begun_ == Begun::Data && &entry == &data_[0] ? begun_bytes_ : 0);
+  out.begin_message(true, begun_ == Begun::Data && &entry == &data_.front() ? begun_bytes_ : 0);
   if (!entry.packet) return gather_text(*entry.word, false, out);
   protocol::PacketHeader header = entry.packet->header;
   header.stream = entry.stream;
@@ -92,23 +96,23 @@ void Outbox::gather_data(const DataLane::Entry& entry, bool alone, Gathered& out
 }
 
 void Outbox::gather(Gathered& out) const noexcept {
-  const std::size_t first = begun_ == Begun::Data ? 1 : 0;
   // A packet of two streams has one headroom, and so has one that is gathered twice.
   const bool alone = data_.size() == 1;
-  if (first == 1) gather_data(data_[0], alone, out);
+  auto entry = data_.entries().begin();
+  if (begun_ == Begun::Data) gather_data(*entry++, alone, out);
   for (auto item = control_.begin(); item != control_.end() && !out.full(); ++item) gather_control(*item, out);
-  for (std::size_t i = first; i < data_.size() && !out.full(); ++i) gather_data(data_[i], alone, out);
+  for (; entry != data_.entries().end() && !out.full(); ++entry) gather_data(*entry, alone, out);
 }
 
 void Outbox::pop_control() {
   const Control& item = control_.front();
-  control_bytes_ -= item.body().size();
+  control_bytes_ -= item.cost();
   if (item.shared) event_bytes_ -= item.body().size();
   control_.pop_front();
 }
 
 void Outbox::pop_data(std::int64_t now_us) {
-  if (const DataLane::Entry& entry = data_[0]; !entry.packet) {
+  if (const DataLane::Entry& entry = data_.front(); !entry.packet) {
     control_bytes_ -= entry.word->size();
     event_bytes_ -= entry.word->size();
   }
@@ -130,7 +134,7 @@ void Outbox::wrote(const Gathered& gathered, std::size_t bytes, std::int64_t now
     if (!message.data) {
       pop_control();
     } else {
-      packets += data_[0].packet ? 1 : 0;
+      packets += data_.front().packet ? 1 : 0;
       pop_data(now_us);
     }
     if (i == 0) begun_ = Begun::None;

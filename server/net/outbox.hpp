@@ -54,7 +54,7 @@ class Gathered {
 ///
 /// The control lane is bounded by its owner, who starts nothing more above kCongestedBytes and closes above kOverflowBytes; the
 /// data lane as data_lane.hpp says: 8 packets and 8 MiB a stream of the newest only (or one packet, whatever its size), 16 MiB
-/// of all streams of which every packet is wanted, each packet with 512 bytes for itself.
+/// of all streams of which every packet is wanted, each packet counted as at least 4 KiB.
 class Outbox {
  public:
   /// Above this, the conversation starts nothing more until the client has read.
@@ -68,13 +68,17 @@ class Outbox {
   void push_shared(std::shared_ptr<const std::string> text);
   /// Behind the packets that wait already.
   void push_after_packets(std::shared_ptr<const std::string> text);
-  /// Bytes that are framed already (Beast's handshake, pongs, closes), as one unit.
+  /// Bytes that are framed already (Beast's handshake and pongs), as one unit.
   void push_raw(std::string bytes);
+  /// The last word, framed already or empty: what waits in the control lane goes before it, packets are dropped, and nothing
+  /// is taken any more.
+  void push_last(std::string bytes);
+  [[nodiscard]] bool last_said() const noexcept { return last_said_; }
 
   /// The streams and their packets.
   [[nodiscard]] DataLane& data() noexcept { return data_; }
   [[nodiscard]] const DataLane& data() const noexcept { return data_; }
-  /// Nothing more of the data lane is sent, but for the rest of a message that has begun.
+  /// No more packets are sent, but for the rest of one that has begun. Words about them join the answers.
   void drop_data();
 
   /// What is to be written next, in its order; nothing moves yet.
@@ -95,6 +99,8 @@ class Outbox {
     bool raw = false;
 
     [[nodiscard]] const std::string& body() const noexcept { return shared ? *shared : text; }
+    /// What it counts for. Pongs of two bytes take many times as much.
+    [[nodiscard]] std::size_t cost() const noexcept { return body().size() + (raw ? sizeof(Control) : 0); }
   };
   enum class Begun : std::uint8_t { None, Control, Data };
 
@@ -109,6 +115,7 @@ class Outbox {
   Metrics& metrics_;
   std::deque<Control> control_;
   DataLane data_;
+  bool last_said_ = false;
   Begun begun_ = Begun::None;      ///< the lane whose first message is partly written
   std::size_t begun_bytes_ = 0;    ///< of it
   std::size_t control_bytes_ = 0;  ///< waiting or being written, words about packets included

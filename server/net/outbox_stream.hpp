@@ -1,10 +1,11 @@
 #pragma once
 
-#include <boost/asio/associated_executor.hpp>
-#include <boost/asio/async_result.hpp>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/compose.hpp>
+#include <boost/asio/error.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/beast/core/role.hpp>
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <utility>
@@ -12,6 +13,36 @@
 #include "server/net/connection.hpp"
 
 namespace tweend::net {
+
+/// Beast's write: one unit, into the outbox. It is done when the client has room for more answers, and so Beast, which waits
+/// for each of its pongs to be written, reads no more pings of a client that does not read.
+struct UnitWrite {
+  std::shared_ptr<Connection> connection;
+  std::string unit;
+  std::size_t bytes = unit.size();
+  bool begun = false;
+
+  template <class Self>
+  void operator()(Self& self, boost::system::error_code = {}) {
+    constexpr char kCloseFrame = '\x88';  // FIN, opcode 8: nothing of the handshake begins like this
+    const auto alive = connection;        // moves away with `self`
+    if (!begun) {
+      begun = true;
+      if (unit.starts_with(kCloseFrame)) {
+        alive->say_last(std::move(unit));
+      } else {
+        alive->push_raw(std::move(unit));
+      }
+      boost::asio::post(alive->socket().get_executor(), std::move(self));
+    } else if (!alive->open()) {
+      self.complete(boost::asio::error::operation_aborted, 0);
+    } else if (alive->congested()) {
+      alive->progress().async_wait(std::move(self));
+    } else {
+      self.complete({}, bytes);
+    }
+  }
+};
 
 /// A connection as Beast's WebSocket sees it (an AsyncStream): reads come from the socket, writes go into the outbox.
 ///
@@ -33,18 +64,10 @@ class OutboxStream {
 
   template <class Buffers, class Token>
   auto async_write_some(const Buffers& buffers, Token&& token) {
-    return boost::asio::async_initiate<Token, void(boost::system::error_code, std::size_t)>(
-        [this](auto handler, const Buffers& bytes) {
-          std::string unit(boost::asio::buffer_size(bytes), '\0');
-          boost::asio::buffer_copy(boost::asio::buffer(unit), bytes);
-          const std::size_t size = unit.size();
-          connection_->push_raw(std::move(unit));
-          const auto executor = boost::asio::get_associated_executor(handler, get_executor());  // before the handler moves
-          boost::asio::post(executor, [handler = std::move(handler), size]() mutable {
-            std::move(handler)(boost::system::error_code(), size);
-          });
-        },
-        token, buffers);
+    std::string unit(boost::asio::buffer_size(buffers), '\0');
+    boost::asio::buffer_copy(boost::asio::buffer(unit), buffers);
+    return boost::asio::async_compose<Token, void(boost::system::error_code, std::size_t)>(
+        UnitWrite{connection_, std::move(unit)}, token, get_executor());
   }
 
  private:

@@ -21,6 +21,7 @@ void RungController::begin_judging(std::int64_t now_us) noexcept {
   history_ = 0;
   judged_since_us_ = now_us;
   calm_since_us_ = now_us;
+  calm_packets_ = 0;
 }
 
 void RungController::judge(std::int64_t now_us, bool pressed) noexcept {
@@ -32,7 +33,12 @@ void RungController::judge(std::int64_t now_us, bool pressed) noexcept {
   constexpr std::uint32_t kJudged = (1U << kJudgedPackets) - 1U;
   history_ = ((history_ << 1U) | (pressed ? 1U : 0U)) & kJudged;
   const int pressed_packets = std::popcount(history_);
-  if (pressed && pressed_packets > 1) calm_since_us_ = now_us;  // one alone may be anything
+  if (!pressed) {
+    calm_packets_ = std::min(calm_packets_ + 1, kJudgedPackets);
+  } else if (pressed_packets > 1) {  // one alone may be anything
+    calm_since_us_ = now_us;
+    calm_packets_ = 0;
+  }
   if (pressed_packets >= kPressedPackets) {
     if (probing_) calm_us_ = std::min(2 * calm_us_, kLongestCalmUs);
     probing_ = false;
@@ -44,7 +50,8 @@ void RungController::judge(std::int64_t now_us, bool pressed) noexcept {
     probing_ = false;
     calm_us_ = std::max(calm_us_ / 4, kCalmUs);
   }
-  if (!pressed && rung_ > 0 && now_us - calm_since_us_ >= calm_us_) {
+  const bool calm = calm_packets_ == kJudgedPackets;  // time in which nothing was sent says nothing
+  if (!pressed && calm && rung_ > 0 && now_us - calm_since_us_ >= calm_us_) {
     choose(now_us, rung_ - 1);
     probing_ = true;
   }

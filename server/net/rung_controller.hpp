@@ -9,8 +9,9 @@ namespace tweend::net {
 ///
 /// A packet is pressed where a newer one took its place before it was written, or where writing it took long. Three of sixteen
 /// send the stream one rung down, but a rung is judged only from when its own first packet has been written: what a larger rung
-/// has left on the way is not held against it. After a while of calm the rung above is tried; where that fails, the next try
-/// waits twice as long, up to a minute, and a try that holds makes the wait shorter again.
+/// has left on the way is not held against it. After a while of calm, in which sixteen packets were not pressed, the rung above
+/// is tried; where that fails, the next try waits twice as long, up to a minute, and a try that holds makes the wait shorter
+/// again.
 ///
 /// Pure: no clock of its own; `now_us` only grows. One thread.
 class RungController {
@@ -55,6 +56,7 @@ class RungController {
   std::int64_t judged_since_us_ = 0;
   std::int64_t calm_since_us_ = 0;
   std::int64_t calm_us_ = kCalmUs;
+  int calm_packets_ = 0;  ///< not pressed since then
 };
 
 }  // namespace tweend::net

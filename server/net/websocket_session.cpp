@@ -76,11 +76,9 @@ asio::awaitable<void> run_websocket_session(Tcp::socket socket, http::request<ht
     connection->conversation().receive(beast::buffers_to_string(buffer.data()));
     buffer.consume(buffer.size());
   }
-  if (stopping && connection->open()) {
-    // 1001, "going away", as one unit behind the answers; the client's close is not waited for.
-    connection->push_raw(std::string("\x88\x02\x03\xe9", 4));
-  }
-  co_await connection->finish(kFarewell);
+  // Behind the answers; the client's close is not waited for.
+  constexpr std::uint16_t kGoingAway = 1001;
+  co_await connection->finish(kFarewell, stopping ? kGoingAway : 0);
 }
 
 }  // namespace tweend::net

@@ -276,6 +276,7 @@ class WebSocketClient(Speaker):
         self.port = port
         self.pongs = []
         self.parts = None  # of a fragmented message: (opcode, bytes)
+        self.was_closed = False
         self.close_code = None
         self.close_reason = None
         self.said_goodbye = False
@@ -343,11 +344,14 @@ class WebSocketClient(Speaker):
     def read_message(self, deadline):
         while True:
             fin, opcode, payload = self.read_frame(deadline)
+            if self.was_closed:
+                raise ProtocolError(f"a frame of opcode {opcode} behind the close frame")
             if opcode == PONG:
                 self.pongs.append(payload)
             elif opcode == PING:
                 self.send_frame(PONG, payload)
             elif opcode == CLOSE:
+                self.was_closed = True
                 self.close_code = int.from_bytes(payload[:2], "big") if payload else None
                 self.close_reason = payload[2:].decode()
                 with contextlib.suppress(OSError):  # the server may not wait for it

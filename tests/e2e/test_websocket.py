@@ -145,17 +145,30 @@ class Ending(harness.TestCase):
         self.assertIn(self.ws.close_code, (None, 1000))
 
     def test_a_close_amid_streaming(self):
+        """No packet follows the server's close frame (the client checks that), whoever begins."""
         mesh = harness.grid(50)
         self.c.call("actor.add", actor="grid", mesh=mesh)
         for height in (1.0, 0.0):
             self.c.call("keyframe.add", vertices={"positions": harness.grid(50, height)["positions"]})
-        self.ws.call("stream.open", kind="vertices", rate=240)
         self.c.call("playback.play")
-        for _ in range(5):
-            self.ws.packet()
-        self.ws.send_frame(CLOSE, b"\x03\xe8")
-        self.ends_with(1000)
-        harness.wait_until(lambda: self.c.call("server.stats")["tweend_streams"] == 0, "its stream is gone")
+        # Goodbye not said: the server waits for the client's close frame, with its streams open.
+        for opcode, payload, code in ((CLOSE, b"\x03\xe8", 1000), (BINARY, b"x", 1003)):
+            ws = self.server.websocket()
+            for _ in range(4):
+                ws.call("stream.open", kind="vertices", rate=240)
+            for _ in range(5):
+                ws.packet()
+            ws.said_goodbye = opcode == BINARY
+            ws.send_frame(opcode, payload)
+            ws.read_to_end()
+            self.assertEqual(ws.close_code, code)
+            ws.close()
+            harness.wait_until(lambda: self.c.call("server.stats")["tweend_streams"] == 0, "its streams are gone")
+        self.ws.call("stream.open", kind="vertices", rate=240)
+        self.ws.packet()
+        self.assertEqual(self.server.stop(), 0)
+        self.ws.read_to_end()
+        self.assertEqual(self.ws.close_code, 1001)
 
     def test_binary_messages_are_refused(self):
         self.ws.send_frame(BINARY, request_json("scene.create", {"scene": "a"}, 1))

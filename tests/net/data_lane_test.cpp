@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <memory>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -26,9 +29,10 @@ class DataLaneTest : public ::testing::Test {
   /// The numbers of what waits.
   std::vector<std::uint32_t> waiting() const {
     std::vector<std::uint32_t> numbers;
-    for (std::size_t i = 0; i < lane.size(); ++i) numbers.push_back(lane[i].sequence);
+    for (const DataLane::Entry& entry : lane.entries()) numbers.push_back(entry.sequence);
     return numbers;
   }
+  const DataLane::Entry& second() const { return *std::next(lane.entries().begin()); }
   /// Writes all, and tells the numbers.
   std::vector<std::uint32_t> write() {
     const auto numbers = waiting();
@@ -47,17 +51,17 @@ TEST_F(DataLaneTest, ANewerPacketReplacesTheOneThatWaits) {
   offer(1, kFlagKey | kFlagDiscontinuity);
   offer(2);
   EXPECT_EQ(waiting(), Numbers{2});
-  EXPECT_EQ(lane[0].flags, kFlagKey | kFlagDiscontinuity) << "what was skipped has jumped";
+  EXPECT_EQ(lane.front().flags, kFlagKey | kFlagDiscontinuity) << "what was skipped has jumped";
   EXPECT_EQ(skipped(), 2);
 }
 
 TEST_F(DataLaneTest, OnlyADiscontinuityIsCarriedOverAndOnlyOnce) {
   offer(0, kFlagKey | kFlagLast | kFlagDiscontinuity);
   offer(1);
-  EXPECT_EQ(lane[0].flags, kFlagKey | kFlagDiscontinuity);
+  EXPECT_EQ(lane.front().flags, kFlagKey | kFlagDiscontinuity);
   write();
   offer(2);
-  EXPECT_EQ(lane[0].flags, kFlagKey);
+  EXPECT_EQ(lane.front().flags, kFlagKey);
 }
 
 TEST_F(DataLaneTest, APacketThatIsBeingWrittenIsNotReplaced) {
@@ -74,9 +78,9 @@ TEST_F(DataLaneTest, ReplacingKeepsTheTurnOfTheStream) {
   lane.offer(2, make_packet(0), 0);
   offer(5);  // stream 1 has waited longer and still goes first
   ASSERT_EQ(lane.size(), 2U);
-  EXPECT_EQ(lane[0].stream, 1U);
-  EXPECT_EQ(lane[0].sequence, 5U);
-  EXPECT_EQ(lane[1].stream, 2U);
+  EXPECT_EQ(lane.front().stream, 1U);
+  EXPECT_EQ(lane.front().sequence, 5U);
+  EXPECT_EQ(second().stream, 2U);
 }
 
 TEST_F(DataLaneTest, AStreamBeginsWithAKeyAndMissesNothingBeforeIt) {
@@ -87,7 +91,7 @@ TEST_F(DataLaneTest, AStreamBeginsWithAKeyAndMissesNothingBeforeIt) {
   offer(5);
   offer(6, 0);
   EXPECT_EQ(waiting(), (Numbers{5, 6}));
-  EXPECT_EQ(lane[0].flags, kFlagKey);
+  EXPECT_EQ(lane.front().flags, kFlagKey);
 }
 
 TEST_F(DataLaneTest, APacketFollowsItsPredecessorWhereverThatIs) {
@@ -124,7 +128,7 @@ TEST_F(DataLaneTest, AKeyReplacesTheWholeChain) {
   offer(3, 0);
   offer(4);
   ASSERT_EQ(waiting(), (Numbers{1, 4, 0})) << "what is being written stays, and so does the other stream's";
-  EXPECT_EQ(lane[1].flags, kFlagKey | kFlagDiscontinuity);
+  EXPECT_EQ(second().flags, kFlagKey | kFlagDiscontinuity);
   EXPECT_EQ(skipped(), 2);
   EXPECT_EQ(write(), (Numbers{1, 4, 0}));
 }
@@ -140,18 +144,18 @@ TEST_F(DataLaneTest, AChainOfEightIsKeptAndALongerOneIsDropped) {
   EXPECT_EQ(skipped(), 10);
   offer(10);
   EXPECT_EQ(waiting(), Numbers{10});
-  EXPECT_EQ(lane[0].flags, kFlagKey | kFlagDiscontinuity) << "3 has jumped";
+  EXPECT_EQ(lane.front().flags, kFlagKey | kFlagDiscontinuity) << "3 has jumped";
 }
 
 TEST_F(DataLaneTest, AChainIsBoundedInBytesToo) {
   const auto large = [](std::uint32_t sequence, std::uint8_t flags) {
-    return make_packet({.sequence = sequence, .flags = flags, .floats = DataLane::kChainBytes / 4 / 3});
+    return make_packet({.sequence = sequence, .flags = flags, .floats = DataLane::kChainBytes / 4 / 3 + 1});
   };
   lane.offer(1, large(0, kFlagKey), 0);
   lane.offer(1, large(1, 0), 0);
   EXPECT_EQ(lane.size(), 2U);
   lane.offer(1, large(2, 0), 0);
-  EXPECT_EQ(lane.size(), 0U) << "three of a third and something";
+  EXPECT_EQ(lane.size(), 0U) << "three of a third and a float";
   lane.offer(1, make_packet({.sequence = 3, .floats = DataLane::kChainBytes}), 0);
   EXPECT_EQ(lane.size(), 1U) << "a single packet may have any size";
 }
@@ -209,6 +213,8 @@ TEST_F(DataLaneTest, AnotherProducersPacketOfTheSameMomentIsNoNews) {
   lane.offer(1, at(400, 2), 0);
   EXPECT_EQ(lane.size(), 0U);
   EXPECT_EQ(skipped(), 0) << "nothing is missed";
+  lane.offer(1, make_packet({.source = 2, .server_us = 400, .encoding = protocol::kVerticesQ16}), 0);
+  EXPECT_EQ(lane.size(), 0U) << "of this encoding each packet is a key, too";
   lane.offer(1, at(501, 2, kFlagKey, 1), 0);
   EXPECT_EQ(write(), Numbers{1}) << "no gap either";
   lane.offer(1, at(501, 3, kFlagKey | kFlagLast), 0);
@@ -216,16 +222,16 @@ TEST_F(DataLaneTest, AnotherProducersPacketOfTheSameMomentIsNoNews) {
 }
 
 TEST_F(DataLaneTest, AKeyThatOthersNeedIsNewsAtAnyMoment) {
-  const auto q16 = [](std::uint32_t sequence, std::uint8_t flags, std::uint64_t source) {
+  const auto meshopt = [](std::uint32_t sequence, std::uint8_t flags, std::uint64_t source) {
     return make_packet(
-        {.sequence = sequence, .flags = flags, .source = source, .server_us = 500, .encoding = protocol::kVerticesQ16});
+        {.sequence = sequence, .flags = flags, .source = source, .server_us = 500, .encoding = protocol::kVerticesMeshopt});
   };
-  lane.offer(1, q16(0, kFlagKey, 1), 0);
+  lane.offer(1, meshopt(0, kFlagKey, 1), 0);
   write();
-  lane.offer(1, q16(8, 0, 2), 0);
+  lane.offer(1, meshopt(8, 0, 2), 0);
   EXPECT_EQ(lane.size(), 0U) << "its predecessor is another producer's";
-  lane.offer(1, q16(9, kFlagKey, 2), 0);
-  lane.offer(1, q16(10, 0, 2), 0);
+  lane.offer(1, meshopt(9, kFlagKey, 2), 0);
+  lane.offer(1, meshopt(10, 0, 2), 0);
   EXPECT_EQ(write(), (Numbers{2, 3}));
 }
 
@@ -244,21 +250,97 @@ TEST_F(DataLaneTest, EverySkipsNothing) {
 TEST_F(DataLaneTest, EveryIsBoundedInBytesAndByThemInPackets) {
   lane.expect(3, kEvery);
   lane.expect(4, kEvery);
-  // Two streams count together; each packet for its payload and 512 bytes.
-  const std::size_t each = 4 * 1024 + 512;
-  const std::size_t most = (std::size_t{16} << 20U) / each;
-  for (std::uint32_t i = 0; i < most; ++i) {
-    lane.offer(3 + i % 2, make_packet({.sequence = i, .floats = 1024}), 0);
+  // Two streams count together; each packet for its payload, and a small one for 4 KiB.
+  for (const std::size_t floats : {0U, 6U, 1024U, 1500U}) {
+    const std::size_t each = std::max<std::size_t>(4096, 4 * floats);
+    const std::size_t most = (std::size_t{16} << 20U) / each;
+    DataLane both(metrics);
+    both.expect(3, kEvery);
+    both.expect(4, kEvery);
+    for (std::uint32_t i = 0; i < most; ++i) {
+      both.offer(3 + i % 2, make_packet({.sequence = i, .floats = floats}), 0);
+    }
+    EXPECT_EQ(both.every_bytes(), most * each);
+    EXPECT_EQ(both.behind(), std::nullopt);
+    both.offer(3, make_packet({.sequence = 100'000, .floats = floats}), 0);
+    EXPECT_EQ(both.behind(), std::optional<std::uint32_t>(3)) << floats;
+    both.begin_front();
+    EXPECT_EQ(both.behind(), std::nullopt) << "what is being written does not wait";
+    both.drop_waiting();
+    EXPECT_EQ(both.size(), 1U);
+    EXPECT_EQ(both.every_bytes(), 0U);
   }
-  EXPECT_EQ(lane.every_bytes(), most * each);
-  EXPECT_EQ(lane.behind(), std::nullopt);
-  lane.offer(3, make_packet({.sequence = 100'000, .floats = 1024}), 0);
+}
+
+TEST_F(DataLaneTest, BehindIsAStreamThatGoesOn) {
+  const auto large = [](std::uint32_t sequence) {
+    return make_packet({.sequence = sequence, .floats = DataLane::kEveryBytes / 4 / 4});
+  };
+  for (const std::uint32_t stream : {1U, 2U, 3U}) lane.expect(stream, kEvery);
+  for (std::uint32_t i = 0; i < 3; ++i) lane.offer(1, large(i), 0);
+  lane.offer(2, make_packet(0), 0);
+  for (std::uint32_t i = 0; i < 2; ++i) lane.offer(3, large(i), 0);
+  EXPECT_EQ(lane.behind(), std::optional<std::uint32_t>(1)) << "of it most waits";
+  lane.end(1);
   EXPECT_EQ(lane.behind(), std::optional<std::uint32_t>(3));
-  lane.begin_front();
-  EXPECT_EQ(lane.behind(), std::nullopt) << "what is being written does not wait";
-  lane.drop_waiting();
-  EXPECT_EQ(lane.size(), 1U);
+  lane.end(3);
+  EXPECT_EQ(lane.behind(), std::optional<std::uint32_t>(2));
+  lane.end(2);
+  EXPECT_EQ(lane.behind(), std::nullopt) << "it gets no more";
+  EXPECT_EQ(write().size(), 6U);
   EXPECT_EQ(lane.every_bytes(), 0U);
+}
+
+// What becomes of a packet is worked out again here plainly, over one sequence of all that was offered.
+TEST_F(DataLaneTest, ManyStreamsKeepTheirTurnsWhateverHappensBetween) {
+  struct Waiting {
+    std::uint32_t stream, sequence;
+  };
+  std::vector<Waiting> expected;
+  std::vector<std::uint32_t> next(9, 0);
+  std::mt19937 random(7);
+  bool begun = false;
+  const auto its = [](std::uint32_t stream) { return [stream](const Waiting& w) { return w.stream == stream; }; };
+  const auto offer_to = [&](std::uint32_t stream, bool key) {
+    const std::uint32_t sequence = next[stream]++;
+    key = key || sequence == 0;
+    const auto first_waiting = expected.begin() + (begun ? 1 : 0);
+    const auto first = std::find_if(first_waiting, expected.end(), its(stream));
+    if (stream % 2 == 0 && key && first != expected.end()) {
+      first->sequence = sequence;
+      expected.erase(std::remove_if(first + 1, expected.end(), its(stream)), expected.end());
+    } else {
+      expected.push_back({stream, sequence});
+    }
+    lane.offer(stream, make_packet(sequence, key ? kFlagKey : 0, stream), 0);
+  };
+  for (std::uint32_t stream = 1; stream <= 8; ++stream) lane.expect(stream, {.every = stream % 2 == 1});
+  std::size_t most = 0;
+  for (int step = 0; step < 5'000; ++step) {
+    const auto what = random() % 16;
+    const auto stream = static_cast<std::uint32_t>(1 + random() % 8);
+    if (what < 8) {
+      offer_to(stream, next[stream] % 5 == 0);  // shorter than a chain may be
+    } else if (what < 15 && !expected.empty()) {
+      what < 10 ? lane.begin_front() : lane.pop_front(0);
+      begun = what < 10;
+      if (!begun) expected.erase(expected.begin());
+    } else if (random() % 64 == 0) {
+      lane.forget(stream);
+      expected.erase(std::remove_if(expected.begin() + (begun ? 1 : 0), expected.end(), its(stream)), expected.end());
+      next[stream] = 0;
+      lane.expect(stream, {.every = stream % 2 == 1});
+    }
+    most = std::max(most, lane.size());
+    ASSERT_EQ(lane.size(), expected.size()) << step;
+    auto entry = lane.entries().begin();
+    for (const Waiting& w : expected) {
+      ASSERT_EQ(entry->stream, w.stream) << step;
+      ASSERT_EQ(entry->packet->header.sequence, w.sequence) << step;
+      ++entry;
+    }
+  }
+  EXPECT_GT(most, 30U);
 }
 
 TEST_F(DataLaneTest, AWordStaysBehindThePacketsAndAStreamThatEndedStillSendsThem) {
@@ -267,8 +349,22 @@ TEST_F(DataLaneTest, AWordStaysBehindThePacketsAndAStreamThatEndedStillSendsThem
   lane.push_word(std::make_shared<const std::string>("ended"));
   EXPECT_FALSE(lane.knows(1));
   ASSERT_EQ(lane.size(), 2U);
-  EXPECT_TRUE(lane[0].packet);
-  EXPECT_EQ(*lane[1].word, "ended");
+  EXPECT_TRUE(lane.front().packet);
+  EXPECT_EQ(*second().word, "ended");
+}
+
+TEST_F(DataLaneTest, WhatIsDroppedGivesItsWordsBack) {
+  offer(0);
+  lane.begin_front();
+  lane.push_word(std::make_shared<const std::string>("first"));
+  offer(1);
+  lane.push_word(std::make_shared<const std::string>("second"));
+  const auto words = lane.drop_waiting();
+  ASSERT_EQ(words.size(), 2U);
+  EXPECT_EQ(*words[0], "first");
+  EXPECT_EQ(*words[1], "second");
+  EXPECT_EQ(waiting(), Numbers{0});
+  EXPECT_TRUE(lane.drop_waiting().empty());
 }
 
 TEST_F(DataLaneTest, ForgettingLeavesWhatHasBegun) {
@@ -316,6 +412,44 @@ TEST_F(DataLaneTest, CountsByStreamWhatBecomesOfItsPackets) {
     EXPECT_EQ(counts(), (Counts{1, 1, 1}));
   }
   EXPECT_EQ(counts(), (Counts{0, 1, 1})) << "a connection that is gone has nothing waiting";
+}
+
+TEST_F(DataLaneTest, RefinedStillsDoNotSpeakOfTheRung) {
+  lane.expect(1, {.adaptive = true});
+  std::int64_t now_us = 0;
+  std::uint32_t sequence = 0;
+  const auto send = [&](std::uint8_t flags, std::int64_t waited_us) {
+    lane.offer(1, make_packet(sequence++, flags), now_us);
+    lane.pop_front(now_us += waited_us);
+  };
+  const auto rung_after = [&](int packets, std::uint8_t flags) {
+    std::optional<std::size_t> rung;
+    for (int i = 0; i < packets; ++i) {
+      send(flags, 400'000);
+      if (const auto move = lane.next_move()) rung = move->rung;
+    }
+    return rung;
+  };
+  constexpr std::uint8_t kStill = kFlagKey | kFlagLast;
+  EXPECT_EQ(rung_after(4, kStill), std::optional<std::size_t>(1)) << "at the top they are as all others";
+  lane.offer(1, make_packet(0, kFlagKey, 2), now_us);  // the new rung's producer takes over
+  lane.pop_front(now_us);
+  const auto refined = [&](int packets) {
+    for (int i = 0; i < packets; ++i) {
+      lane.offer(1, make_packet(++sequence, kStill, 2), now_us);
+      now_us += 400'000;
+      if (i % 2 == 0) lane.pop_front(now_us);
+    }
+    return lane.next_move();
+  };
+  sequence = 0;
+  EXPECT_FALSE(refined(20));
+  if (lane.size() > 0) lane.pop_front(now_us);
+  for (int i = 0; i < 3; ++i) {
+    lane.offer(1, make_packet(++sequence, kFlagKey, 2), now_us);
+    lane.pop_front(now_us += 400'000);
+  }
+  EXPECT_TRUE(lane.next_move());
 }
 
 TEST_F(DataLaneTest, TakesNoMemoryForAPacketOnceItHasGrown) {

@@ -331,19 +331,61 @@ TEST_F(OutboxTest, WritesGoOnExactlyWhereTheyStoppedAndNothingFallsInsideAPacket
   }
 }
 
-TEST_F(OutboxTest, WhatIsDroppedLeavesWhatHasBegunAndTheAnswers) {
+TEST_F(OutboxTest, FramesOfTwoBytesCountForTheMemoryTheyTake) {
+  // A text and who shares it, at least.
+  const std::size_t most = Outbox::kCongestedBytes / (sizeof(std::string) + sizeof(std::shared_ptr<std::string>));
+  std::size_t pongs = 0;
+  for (; !web.congested() && pongs <= most; ++pongs) web.push_raw(std::string("\x8A\0", 2));
+  EXPECT_LE(pongs, most);
+  EXPECT_EQ(drain(web).size(), 2 * pongs);
+  EXPECT_FALSE(web.congested());
+}
+
+TEST_F(OutboxTest, NothingIsTakenAfterTheLastWord) {
+  for (std::uint32_t stream = 1; stream <= 2; ++stream) web.data().offer(stream, make_packet(0), 0);
+  web.push_after_packets(std::make_shared<const std::string>("ended"));
+  std::string wire = write_some(web, 10);
+  web.push_text("answer");
+  EXPECT_FALSE(web.last_said());
+  web.push_last(close_frame(1001, "going"));
+  EXPECT_TRUE(web.last_said());
+  web.push_last(close_frame(1000, {}));
+  web.push_text("late");
+  web.push_shared(std::make_shared<const std::string>("late"));
+  web.push_after_packets(std::make_shared<const std::string>("late"));
+  web.push_raw("late");
+  wire += drain(web);
+  const auto messages = messages_in(Framing::WebSocket, wire);
+  ASSERT_EQ(messages.size(), 4U);
+  EXPECT_EQ(messages[0].size(), 2U + 64U) << "what had begun";
+  EXPECT_EQ(messages[1],
+            "\x81\x06"
+            "answer");
+  EXPECT_EQ(messages[2],
+            "\x81\x05"
+            "ended");
+  EXPECT_EQ(messages[3],
+            "\x88\x07\x03\xE9"
+            "going");
+  EXPECT_TRUE(web.empty());
+}
+
+TEST_F(OutboxTest, WhatIsDroppedLeavesWhatHasBegunAndAllWords) {
   for (std::uint32_t stream = 1; stream <= 3; ++stream) line.data().offer(stream, make_packet(0), 0);
   line.push_after_packets(std::make_shared<const std::string>(std::string(Outbox::kOverflowBytes + 1, 'x')));
   EXPECT_TRUE(line.overflowed());
   std::string wire = write_some(line, 10);
   line.push_text("answer");
   line.drop_data();
-  EXPECT_FALSE(line.overflowed());
+  EXPECT_TRUE(line.overflowed());
   wire += drain(line);
+  EXPECT_FALSE(line.overflowed());
+  EXPECT_FALSE(line.congested());
   const auto messages = messages_in(Framing::Line, wire);
-  ASSERT_EQ(messages.size(), 2U);
+  ASSERT_EQ(messages.size(), 3U);
   EXPECT_EQ(header_in(messages[0]).stream, 1U);
   EXPECT_EQ(messages[1], "answer\n");
+  EXPECT_EQ(messages[2].size(), Outbox::kOverflowBytes + 2);
 }
 
 }  // namespace

@@ -193,6 +193,22 @@ TEST(RungController, SlowPicturesThatNothingReplacesAreJudgedByTheirAge) {
   EXPECT_LE(link.rung(), 3U) << "0.13 s";
 }
 
+// A picture now and then: time passes in which nothing is measured.
+TEST(RungController, ClimbsByWhatWasMeasuredOnly) {
+  RungController controller(kRungCount);
+  std::int64_t now_us = 0;
+  controller.written(now_us, 0);
+  while (controller.rung() == 0) controller.replaced(now_us += 33'000);
+  controller.settle();
+  controller.written(now_us, 0);
+  for (int i = 1; i < RungController::kJudgedPackets; ++i) {
+    controller.written(now_us += 10 * kSecond, 1000);
+    ASSERT_EQ(controller.rung(), 1U) << i;
+  }
+  controller.written(now_us += 10 * kSecond, 1000);
+  EXPECT_EQ(controller.rung(), 0U);
+}
+
 TEST(RungController, SinglePressedPacketsAreNoPressure) {
   RungController controller(kRungCount);
   std::int64_t now_us = 0;
