@@ -141,8 +141,9 @@ class Crowd:
         if self.said(PATIENCE_S * 4) != "ready":
             raise AssertionError("the crowd began with something else")
 
-    def running(self):
-        return not self.pipe.poll()
+    def running(self, seconds=0):
+        """Whether it has not ended, nor does so within so many seconds."""
+        return not self.pipe.poll(seconds)
 
     def result(self):
         """[(manner, kind, [(sequence, media time, clock reading)])] once it has ended; it stays connected until close()."""

@@ -30,8 +30,10 @@ class Encodings(harness.TestCase):
                          encoding=encoding)
         self.refused(-32602, "stream.open", path="params.bitrate", kind="vertices", actor="tri", bitrate=100_000)
         self.refused(-32602, "stream.open", path="params.bitrate", kind="frames", encoding="h264", bitrate=100)
+        for params in ({"kind": "vertices", "actor": "tri"}, {"kind": "pose", "actor": "arm"}, {"kind": "vertices", "encoding": "q16", "actor": "tri"}):
+            self.refused(-32602, "stream.open", path="params.adaptive", adaptive=True, **params)
+            self.c.call("stream.open", adaptive=False, **params)
         self.refused(-32602, "stream.open", path="params.adaptive", kind="frames", encoding="png", adaptive=True)
-        self.refused(-32602, "stream.open", path="params.adaptive", kind="vertices", actor="tri", adaptive=False)
         self.refused(-32001, "stream.request_key", path="params.stream", stream=7)
 
     def test_q16_vertices_are_within_their_error(self):
@@ -188,13 +190,49 @@ class H264(pictures.PictureCase):
         for p, picture in zip(packets, shown, strict=True):
             self.looks_like(picture, self.picture(time=p.media_us / 1e6))
 
+    def bits_of_seconds(self, packets):
+        """Of all seconds that begin with one of these packets and lie among them."""
+        end_us = packets[-1].server_us
+        return [8 * sum(len(p.payload) for p in packets if 0 <= p.server_us - first.server_us < 1_000_000)
+                for first in packets if first.server_us + 1_000_000 <= end_us]
+
     def test_a_bit_rate_is_kept(self):
-        stream = self.open(bitrate=100_000, rate=30, width=320, height=240)["stream"]
-        self.c.call("playback.play", speed=3, loop="ping_pong")
-        packets = [self.c.packet(stream) for _ in range(90)]
-        span_s = (packets[-1].server_us - packets[0].server_us) / 1e6
-        bits = 8 * sum(len(p.payload) for p in packets)
-        self.assertLess(bits, 100_000 * (span_s + 1) * 1.1)
+        self.c.call("actor.remove", actor="quad")
+        pictures.add_rough(self.c)
+        self.c.call("playback.play", speed=0.2, loop="ping_pong")
+        wide = {"width": 640, "height": 360, "rate": 30}
+        free, kept = self.open(**wide)["stream"], self.open(bitrate=300_000, **wide)["stream"]
+        packets = {free: [], kept: []}
+        while min(map(len, packets.values())) < 75:
+            packet = self.c.packet()
+            packets[packet.stream].append(packet)
+        self.assertGreater(min(self.bits_of_seconds(packets[free])), 2 * 300_000, "there is something to keep from")
+        self.assertLessEqual(max(self.bits_of_seconds(packets[kept])), 300_000)
+
+    def test_another_rate_begins_anew(self):
+        stream = self.open(rate=30)["stream"]
+        self.c.call("playback.play", speed=0.1)
+        packets = [self.c.packet_where(lambda p: not p.flags & KEY, stream)]
+        self.c.call("stream.update", stream=stream, rate=20)
+        while len([p for p in packets if p.flags & KEY]) < 2:
+            packets.append(self.c.packet(stream))
+        anew = next(i for i, p in enumerate(packets) if p.flags & KEY)
+        for period_us, run in ((1e6 / 30, packets[:anew]), (1e6 / 20, packets[anew + 1:])):
+            for a, b in zip(run, run[1:]):
+                turns = (b.server_us - a.server_us) / period_us
+                self.assertAlmostEqual(turns, round(turns), delta=0.01, msg=f"{anew} of {packets}")
+        self.assertEqual(len(self.decode(packets[anew:])), len(packets) - anew)
+
+    def test_a_quality_is_of_jpeg_alone(self):
+        for encoding in ("png", "h264", "rgba"):
+            answers = [self.open(encoding=encoding, **kw)["stream"] for kw in ({}, {"quality": 1})]
+            payloads = [self.c.packet(stream).payload for stream in answers]
+            self.assertEqual(*payloads)
+        wait_until(lambda: self.c.call("server.stats")["tweend_producers"] == 3, "those of an encoding share a producer")
+
+    def test_a_server_tells_what_it_draws(self):
+        frames = {c for c in self.c.call("server.hello")["capabilities"] if c.startswith("frames:")}
+        self.assertEqual(frames, {"frames:jpeg", "frames:png", "frames:rgba", "frames:h264"})
 
 
 if __name__ == "__main__":
