@@ -131,11 +131,19 @@ class TestCase(unittest.TestCase):
     assets = ()
     render = False
     starts_server = True
+    needs_h264 = False
 
     def setUp(self):
         if self.starts_server:
             self.server = self.serve(*self.options, assets=self.assets, render=self.render)
             self.c = self.server.line()
+            if self.needs_h264:
+                self.skip_without_h264()
+
+    def skip_without_h264(self):
+        """Builds with -DTWEEND_H264=OFF have none."""
+        if "frames:h264" not in self.c.call("server.hello")["capabilities"]:
+            self.skipTest("a build without H.264")
 
     def serve(self, *options, **kw):
         server = Server(*options, **kw)

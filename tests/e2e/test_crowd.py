@@ -1,5 +1,5 @@
-"""Readers that never read, readers that read slowly and healthy ones, of packets that stand alone and of chains, all at once: what the healthy ones are given, what it
-costs the server in memory, and whether it answers meanwhile.
+"""Readers that never read, readers that read slowly and healthy ones, of packets that stand alone and of chains, all at once: what
+the healthy ones are given, what it costs the server in memory, and whether it answers meanwhile.
 
 TWEEND_CROWD_SECONDS says how long, 15 unless told; a minute is what a release is tried with:
 

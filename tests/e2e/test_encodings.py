@@ -111,8 +111,28 @@ class Encodings(harness.TestCase):
         wait_until(lambda: figure("readers") == [], "it is gone")
 
 
+class WithoutH264(pictures.PictureCase):
+    def setUp(self):
+        self.assets = (self.folder(),)
+        super().setUp()
+        if "frames:h264" in self.c.call("server.hello")["capabilities"]:
+            self.skipTest("a build with H.264")
+
+    def test_what_needs_it_is_unavailable_and_the_rest_is_not(self):
+        self.add_growing()
+        self.refused(-32006, "stream.open", kind="frames", encoding="h264", **SQUARE)
+        self.refused(-32006, "record.start", name="a.mp4", **SQUARE)
+        self.assertEqual(self.server.http("GET", "/scenes/main/clip.mp4?width=96&height=64")[0], 503)
+        for encoding in ("jpeg", "png", "rgba"):
+            self.c.packet(self.c.call("stream.open", kind="frames", encoding=encoding, **SQUARE)["stream"])
+        started = self.c.call("record.start", name="folder", format="png_sequence", **SQUARE)
+        self.assertGreater(self.c.call("record.stop", record=started["record"])["frames"], 0)
+        self.assertEqual(os.listdir(self.assets[0]), ["folder"])
+
+
 class H264(pictures.PictureCase):
     """FFmpeg reads what is sent, without a word."""
+    needs_h264 = True
 
     def setUp(self):
         super().setUp()

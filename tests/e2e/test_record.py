@@ -19,7 +19,7 @@ def shifted(x):
 
 
 class Recording(pictures.PictureCase):
-    render = True
+    needs_h264 = True
 
     def setUp(self):
         self.root = self.folder()

@@ -6,6 +6,7 @@ import subprocess
 
 import harness
 import pictures
+from films import Film
 from harness import TWEENCTL
 from pictures import STRAIGHT, Picture, jpeg_size
 
@@ -104,6 +105,7 @@ class Frames(pictures.PictureCase):
         self.assertEqual(self.read(f"new/folder/{name}"), self.file(camera={"fit": True}))
 
     def test_video_into_a_file(self):
+        self.skip_without_h264()
         self.c.call("playback.play", speed=0.5)
         said = self.ctl("watch", "frames", "--encoding", "h264", "-o", self.path("a.h264"), "--count", 12, "--size", "64x48")
         self.assertIn("a.h264: 12 frames, ", said)
@@ -112,6 +114,7 @@ class Frames(pictures.PictureCase):
             self.assertEqual(len(self.decoded(self.path("a.h264"))), 12 * 64 * 48)
 
     def test_video_to_standard_output(self):
+        self.skip_without_h264()
         done = self.run_ctl("watch", "frames", "--encoding", "h264", "-o", "-", "--count", 1, "--size", "64x48")
         self.assertRegex(done.stderr.decode(), r"\A-: 1 frame, [^\n]+\n\Z")
         raw = self.run_ctl("watch", "frames", "--encoding", "rgba", "-o", "-", "--count", 1, "--size", "64x48").stdout
@@ -128,9 +131,23 @@ class Frames(pictures.PictureCase):
         self.assertEqual((done.returncode, done.stderr), (0, b""))
         return done.stdout
 
+    def test_a_recording(self):
+        self.skip_without_h264()
+        assets = self.folder()
+        port = self.serve(assets=[assets], render=True).port
+        started = json.loads(self.ctl("--json", "record", "start", "walk.mp4", "--size", "64x48", port=port))["record"]
+        self.assertRegex(self.ctl("record", "start", "walk", "--size", "64x48", port=port), "^recording [0-9]+ to walk: ")
+        self.assertRegex(self.ctl("record", "stop", started, port=port), "^walk.mp4 saved: [1-9][0-9]* pictures, [1-9][0-9]* bytes\n$")
+        self.assertEqual(Film(os.path.join(assets, "walk.mp4")).size, (64, 48))
+        self.ctl("record", "stop", started + 1, port=port)
+        self.assertIn("frame_000000.png", os.listdir(os.path.join(assets, "walk")))
+        for name in ("film.avi", "film.mp"):
+            self.assertIn("expected a name that ends with .mp4", self.refused_ctl(1, "record", "start", name, port=port))
+        self.assertEqual(sorted(os.listdir(assets)), ["walk", "walk.mp4"])
+
     def test_what_the_server_knows_better(self):
         error = self.refused_ctl(1, "watch", "frames", "--encoding", "h264", "--size", "65x48", "-o", self.path("a.h264"))
-        self.assertIn("params.width", error)
+        self.assertRegex(error, "params.width|without")
         self.refused_ctl(1, "watch", "frames", "--bitrate", 100000)
         self.refused_ctl(1, "watch", "frames", "--encoding", "png", "--adaptive")
         self.assertEqual(os.listdir(self.out), [])
