@@ -211,6 +211,12 @@ class TestCase(unittest.TestCase):
         at = {"scene": kw["scene"]} if "scene" in kw else {}
         return [self.add_key(t * t, actor=actor, time=t, **at) for t in range(keys)]
 
+    def add_waving_grid(self, side, heights=(0.0, 1.0), actor="grid"):
+        """Adds a mesh of side × side vertices that is at these heights at the times 0, 1, …"""
+        self.c.call("actor.add", actor=actor, mesh=grid(side))
+        for height in heights:
+            self.c.call("keyframe.add", actor=actor, vertices={"positions": grid(side, height)["positions"]})
+
     def player(self, **kw):
         players = self.c.call("playback.get", **kw)["players"]
         self.assertEqual(len(players), 1)

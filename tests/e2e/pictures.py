@@ -261,3 +261,21 @@ class PictureCase(harness.TestCase):
         """What is shown reaches from left, top to right, bottom."""
         got = picture.extent()
         self.assertLessEqual(max(abs(g - w) for g, w in zip(got, want)), tolerance, f"got {got}, want {want}")
+
+
+class GrowingCase(PictureCase):
+    """A growing quad, which the scene's camera looks straight at, and a client beside the one that watches."""
+    encoding = "png"  # of streams, unless said otherwise
+
+    def setUp(self):
+        super().setUp()
+        self.add_growing()
+        self.c.call("camera.set", **STRAIGHT)
+        self.other = self.server.line()
+
+    def open(self, client=None, **kw):
+        """A stream of small pictures: its number."""
+        return (client or self.c).call("stream.open", **{"kind": "frames", "encoding": self.encoding} | SQUARE | kw)["stream"]
+
+    def seek(self, t):
+        return self.other.call("playback.seek", time=t)

@@ -66,9 +66,7 @@ class CrowdTest(harness.TestCase):
         self.asked = {crowd.HEALTHY: [vertices, frames, pose, every], crowd.SLOW: self.streams,
                       crowd.STUCK: [*self.streams, *self.streams, every]}
         self.waiting = {crowd.name_of(s): CHAIN if s in chained else 1 for s in self.streams} | {crowd.name_of(every): self.seconds * rate}
-        self.c.call("actor.add", actor="grid", mesh=harness.grid(SIDE))
-        for height in (0.0, 1.0):
-            self.c.call("keyframe.add", actor="grid", vertices={"positions": harness.grid(SIDE, height)["positions"]})
+        self.add_waving_grid(SIDE)
         joints = [{"name": f"j{i}"} | ({"parent": f"j{i - 1}", "translation": [0, 0.1, 0]} if i else {}) for i in range(JOINTS)]
         self.c.call("actor.add", actor="chain", skeleton={"joints": joints})
         for angle in (0.0, 0.5):

@@ -1,5 +1,4 @@
 """Pictures by HTTP (section 7): frame.png, frame.jpg, and stream.mjpg as browsers, VLC and OpenCV read it."""
-import re
 import shutil
 import signal
 import subprocess
@@ -8,7 +7,7 @@ import unittest
 
 import harness
 import pictures
-from client import Closed, HttpClient, ProtocolError, read_http_head, PATIENCE_S
+from client import PATIENCE_S, read_http_head
 from harness import wait_until
 from pictures import Mjpeg, Picture, jpeg_size
 

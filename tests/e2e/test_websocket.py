@@ -82,10 +82,7 @@ class Messages(harness.TestCase):
             self.assertEqual(len(self.ws.packet(stream).payload), n * n * 24)
 
     def test_pings_are_answered_with_their_payload_amid_streaming(self):
-        mesh = harness.grid(50)
-        self.c.call("actor.add", actor="grid", mesh=mesh)
-        for height in (1.0, 0.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(50, height)["positions"]})
+        self.add_waving_grid(50, (1.0, 0.0))
         self.ws.call("stream.open", kind="vertices", rate=240)
         self.c.call("playback.play")
         sent = []
@@ -145,10 +142,7 @@ class Ending(harness.TestCase):
         self.assertIn(self.ws.close_code, (None, 1000))
 
     def test_a_close_amid_streaming(self):
-        mesh = harness.grid(50)
-        self.c.call("actor.add", actor="grid", mesh=mesh)
-        for height in (1.0, 0.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(50, height)["positions"]})
+        self.add_waving_grid(50, (1.0, 0.0))
         self.ws.call("stream.open", kind="vertices", rate=240)
         self.c.call("playback.play")
         for _ in range(5):
