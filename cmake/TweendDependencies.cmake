@@ -3,7 +3,7 @@ find_package(Threads REQUIRED)
 find_package(Boost 1.81 REQUIRED)            # Asio and Beast, header-only
 find_package(spdlog REQUIRED)
 find_package(hwy REQUIRED)
-find_package(meshoptimizer REQUIRED)           # EXT_meshopt_compression
+find_package(meshoptimizer REQUIRED)           # EXT_meshopt_compression, streams of vertices
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)          # EGL and OpenGL, found at run time

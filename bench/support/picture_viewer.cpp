@@ -1,15 +1,13 @@
 #include "bench/support/picture_viewer.hpp"
 
-#include <arpa/inet.h>
-#include <netinet/in.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include <charconv>
 #include <chrono>
 #include <cstring>
 
+#include "bench/support/loopback.hpp"
 #include "bench/support/server_process.hpp"
 
 namespace tweend::bench {
@@ -17,25 +15,10 @@ namespace {
 
 constexpr std::size_t kHeaderBytes = 40;
 constexpr std::size_t kSequenceOffset = 12;
-constexpr std::string_view kAnnouncement = R"({"jsonrpc":"2.0","method":"stream.packet")";
-
-std::size_t announced_bytes(std::string_view line) {
-  constexpr std::string_view kKey = "\"bytes\":";
-  const std::size_t at = line.find(kKey);
-  std::size_t bytes = 0;
-  if (at != std::string_view::npos) std::from_chars(line.data() + at + kKey.size(), line.data() + line.size(), bytes);
-  if (bytes <= kHeaderBytes) give_up("no picture was announced by " + std::string(line));
-  return bytes;
-}
 
 }  // namespace
 
-PictureViewer::PictureViewer(std::uint16_t port, const std::string& params) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) give_up(std::strerror(errno));
+PictureViewer::PictureViewer(std::uint16_t port, const std::string& params) : socket_(connect_loopback(port)) {
   const std::string line = R"({"jsonrpc":"2.0","id":1,"method":"stream.open","params":)" + params + "}\n";
   if (::send(socket_, line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size())) give_up("nothing was sent");
   while (!open_) {

@@ -1,22 +1,17 @@
 #include "bench/support/seeking_viewer.hpp"
 
-#include <arpa/inet.h>
 #include <fmt/format.h>
-#include <netinet/in.h>
-#include <netinet/tcp.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <charconv>
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <span>
 
+#include "bench/support/loopback.hpp"
 #include "bench/support/server_process.hpp"
 #include "bench/support/server_requests.hpp"
 
@@ -26,29 +21,12 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kPatienceSeconds = 5.0;
-constexpr std::string_view kAnnouncement = R"({"jsonrpc":"2.0","method":"stream.packet")";
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-std::size_t announced_bytes(std::string_view line) {
-  constexpr std::string_view kKey = "\"bytes\":";
-  const std::size_t at = line.find(kKey);
-  std::size_t bytes = 0;
-  if (at != std::string_view::npos) std::from_chars(line.data() + at + kKey.size(), line.data() + line.size(), bytes);
-  if (bytes < protocol::kPacketHeaderBytes) give_up("no packet was announced by " + std::string(line));
-  return bytes;
-}
-
 }  // namespace
 
-SeekingViewer::SeekingViewer(std::uint16_t port, const std::string& params) : socket_(::socket(AF_INET, SOCK_STREAM, 0)) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_port = htons(port);
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  if (::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) give_up(std::strerror(errno));
-  const int on = 1;
-  ::setsockopt(socket_, IPPROTO_TCP, TCP_NODELAY, &on, sizeof on);
+SeekingViewer::SeekingViewer(std::uint16_t port, const std::string& params) : socket_(connect_loopback(port)) {
   send(request("stream.open", params));
   receive_until([this] { return all_answered() && packets_ > 0; });
 }

@@ -64,6 +64,7 @@ ExitCode render(Session& session, const Arguments& arguments) {
   const auto file = arguments.get<std::string>("file", "");
   const bool to_output = file == "-";
   if (to_output && session.options().json) throw Usage("--json: the picture goes to standard output; name a file for it");
+  if (to_output) session.expect_no_terminal("a picture");
   const PictureFormat format = format_of_file(file).value_or(PictureFormat::Png);
   Json params = picture_params(arguments);
   params["format"] = name_of(format);

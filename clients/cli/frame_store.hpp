@@ -11,7 +11,10 @@ namespace tweend::cli {
 /// Where the packets of a stream of frames are put.
 class FrameStore {
  public:
+  FrameStore() = default;
   virtual ~FrameStore() = default;
+  FrameStore(const FrameStore&) = delete;
+  FrameStore& operator=(const FrameStore&) = delete;
   /// @return the file that it lies in now
   /// Throws NoServer where the packet is not of this kind, Failure where it can't be written.
   virtual std::string store(const Packet& packet) = 0;
@@ -31,15 +34,19 @@ class PictureFolder : public FrameStore {
 /// All payloads one after the other: for h264 what players call a raw stream, for rgba raw video.
 class PayloadFile : public FrameStore {
  public:
-  /// Nothing is opened, nor an earlier file lost, before the first packet has come.
+  /// Opens the file; what an earlier one holds is kept until the first packet has come. Throws Usage.
   /// @param path  `-`: `out`
-  PayloadFile(std::string path, std::ostream& out) : path_(std::move(path)), out_(out) {}
+  PayloadFile(std::string path, std::ostream& out);
+  /// A file that this has made and stored nothing in is removed.
+  ~PayloadFile() override;
   std::string store(const Packet& packet) override;
 
  private:
   std::string path_;
   std::ostream& out_;
   std::ofstream file_;
+  bool is_new_ = false;     ///< there was none before
+  bool has_begun_ = false;  ///< with the first packet
 };
 
 }  // namespace tweend::cli

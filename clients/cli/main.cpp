@@ -27,5 +27,6 @@ int main(int argc, char** argv) {
   std::signal(SIGINT, [](int) { std::_Exit(static_cast<int>(ExitCode::Interrupted)); });
   std::signal(SIGPIPE, SIG_DFL);  // `tweenctl events | head` ends with head, whatever our parent ignored
   std::ios::sync_with_stdio(false);
-  return static_cast<int>(run({argv + 1, argv + argc}, Io{std::cin, std::cout, std::cerr, err_columns()}));
+  return static_cast<int>(
+      run({argv + 1, argv + argc}, Io{std::cin, std::cout, std::cerr, err_columns(), isatty(STDOUT_FILENO) != 0}));
 }

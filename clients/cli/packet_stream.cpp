@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "clients/cli/arguments.hpp"
 #include "clients/cli/clock_offset.hpp"
 #include "clients/cli/event.hpp"
 #include "clients/cli/failure.hpp"
@@ -46,6 +47,16 @@ void PacketStream::check_ended(const std::string& line) const {
   const Json event = parse_event(line);
   if (event.at("method") != "stream.ended" || event.at("params").value("stream", Json()) != stream_) return;
   throw Failure(ExitCode::Refused, "the stream has ended: " + brief_member(event.at("params"), "reason"));
+}
+
+ExitCode print_packets(const Session& session, PacketStream& stream, const Arguments& arguments,
+                       const std::function<std::string(const Packet& packet, ClockUs age_us)>& line) {
+  const auto count = arguments.get<std::uint64_t>("count", 0);
+  for (std::uint64_t seen = 0; count == 0 || seen < count; ++seen) {
+    const Packet packet = stream.next({});
+    if (!session.print_line(line(packet, stream.age_us(packet, steady_now_us())))) break;
+  }
+  return ExitCode::Done;
 }
 
 std::string packet_text(const Packet& packet, ClockUs age_us) {

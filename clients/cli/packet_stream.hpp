@@ -1,15 +1,18 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "clients/cli/connection.hpp"
+#include "clients/cli/exit_code.hpp"
 #include "server/base/clock.hpp"
 
 namespace tweend::cli {
 
 class Session;
+struct Arguments;
 
 /// A stream of packets of any kind. Used by one thread.
 class PacketStream {
@@ -34,6 +37,11 @@ class PacketStream {
   Json stream_;             ///< its number
   Json layout_;
 };
+
+/// Prints a line a packet, until --count of them have come or nobody reads the lines any more. Throws what next() throws.
+/// @param line  of a packet and its age
+ExitCode print_packets(const Session& session, PacketStream& stream, const Arguments& arguments,
+                       const std::function<std::string(const Packet& packet, ClockUs age_us)>& line);
 
 /// The beginning of a packet's line: its number, media time, age and flags.
 [[nodiscard]] std::string packet_text(const Packet& packet, ClockUs age_us);

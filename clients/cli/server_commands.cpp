@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -8,6 +9,7 @@
 #include "clients/cli/command.hpp"
 #include "clients/cli/families.hpp"
 #include "clients/cli/format.hpp"
+#include "clients/cli/histograms.hpp"
 #include "clients/cli/lists.hpp"
 #include "clients/cli/session.hpp"
 
@@ -42,10 +44,29 @@ void add_figures(Table& table, const std::string& prefix, const Json& figures) {
   }
 }
 
+/// Milliseconds of a histogram of seconds.
+std::string quantile_text(const Histogram& durations, double share) {
+  const double seconds = quantile(durations, share);
+  if (std::isnan(seconds)) return "-";
+  if (std::isfinite(seconds)) return fmt::format("{:.2f}", seconds * 1e3);
+  const double longest = durations.up_to.size() > 1 ? durations.up_to[durations.up_to.size() - 2].first : 0.0;
+  return fmt::format("> {}", number_text(longest * 1e3));
+}
+
 void show_stats(std::ostream& out, const Json&, const Json& result) {
   Table table({"figure", "value"});
-  add_figures(table, "", result);
+  Json figures = result;
+  const auto durations = take_histograms(figures);
+  add_figures(table, "", figures);
   table.print(out);
+  if (durations.empty()) return;
+  Table rows({"duration", "count", "median ms", "p99 ms"});
+  for (const Histogram& duration : durations) {
+    rows.row(
+        {printable(duration.name), number_text(duration.count()), quantile_text(duration, 0.5), quantile_text(duration, 0.99)});
+  }
+  out << '\n';
+  rows.print(out);
 }
 
 Json pick_assets(const Json& result) { return result.at("assets"); }
@@ -58,7 +79,8 @@ void add_server_commands(CommandSet& commands) {
       .runs(ping);
   commands.add("info", "What the server is and may be asked for.")
       .requests("server.hello", "{server} {version}, protocol {protocol}; your role is {role}; capabilities: {capabilities}");
-  commands.add("stats", "The server's counters and gauges.").requests("server.stats", show_stats);
+  commands.add("stats", "The server's counters and gauges; of durations their count, median and p99 (all buckets with --json).")
+      .requests("server.stats", show_stats);
   lists(commands.add("assets", "The files in the assets folders."), "asset.list", pick_assets, "name", "no assets");
 }
 

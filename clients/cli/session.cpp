@@ -1,5 +1,7 @@
 #include "clients/cli/session.hpp"
 
+#include <fmt/format.h>
+
 #include <nlohmann/json.hpp>
 #include <ostream>
 
@@ -16,7 +18,17 @@ Json Session::call(std::string_view method, const Json& params) {
   return server.call(method, params, deadline_in(options_.timeout_s));
 }
 
+Json Session::call_patiently(std::string_view method, const Json& params) { return connection().call(method, params, {}); }
+
 Message Session::next(Deadline deadline) { return connection().next(deadline); }
+
+void Session::expect_no_terminal(std::string_view what) const {
+  if (!io_.out_is_terminal) return;
+  throw Usage(
+      fmt::format("expected standard output to be a file or a pipe for {}, found a terminal: name a file, or add "
+                  "`> FILE` or `| PROGRAM`",
+                  what));
+}
 
 Json Session::scene_params() const { return options_.scene ? Json{{"scene", *options_.scene}} : Json::object(); }
 

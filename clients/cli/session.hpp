@@ -20,7 +20,8 @@ struct Io {
   std::istream& in;
   std::ostream& out;
   std::ostream& err;
-  std::size_t err_columns = 0;  ///< of the terminal that `err` is; 0: it is none, and nobody watches it
+  std::size_t err_columns = 0;   ///< of the terminal that `err` is; 0: it is none, and nobody watches it
+  bool out_is_terminal = false;  ///< which bytes that are no text would garble
 };
 
 /// What holds for every command.
@@ -39,8 +40,10 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  /// Throws Refusal or NoServer.
+  /// Waits for the answer as long as --timeout says. Throws Refusal or NoServer.
   [[nodiscard]] Json call(std::string_view method, const Json& params);
+  /// The same, waiting for the answer however long it takes.
+  [[nodiscard]] Json call_patiently(std::string_view method, const Json& params);
   /// The next event or packet. Throws NoServer or TimedOut.
   [[nodiscard]] Message next(Deadline deadline);
 
@@ -49,6 +52,9 @@ class Session {
   [[nodiscard]] std::ostream& err() const noexcept { return io_.err; }
   /// Of the terminal on standard error; 0: it is none.
   [[nodiscard]] std::size_t err_columns() const noexcept { return io_.err_columns; }
+  /// Throws Usage where standard output is a terminal.
+  /// @param what  is to be written there, `a picture`
+  void expect_no_terminal(std::string_view what) const;
   /// `{scene}` where one was named, else `{}`.
   [[nodiscard]] Json scene_params() const;
   /// Writes a line and lets it out at once: others may read the events as they come.

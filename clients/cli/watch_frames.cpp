@@ -1,5 +1,7 @@
 #include "clients/cli/watch_frames.hpp"
 
+#include <fmt/format.h>
+
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -21,16 +23,6 @@ namespace {
 
 // How long an interrupt waits for a packet, and the progress bar for its next second.
 constexpr double kTickS = 0.1;
-
-ExitCode print_frames(Session& session, PacketStream& stream, std::uint64_t count) {
-  for (std::uint64_t seen = 0; count == 0 || seen < count; ++seen) {
-    const Packet packet = stream.next({});
-    const ClockUs age_us = stream.age_us(packet, steady_now_us());
-    const bool json = session.options().json;
-    if (!session.print_line(json ? frame_json(packet, age_us, "") : frame_text(packet, age_us, stream.layout()))) break;
-  }
-  return ExitCode::Done;
-}
 
 std::optional<Packet> next_within(PacketStream& stream, double seconds) {
   try {
@@ -67,15 +59,23 @@ ExitCode store_frames(Session& session, PacketStream& stream, FrameStore& store,
   return is_done ? ExitCode::Done : ExitCode::Interrupted;
 }
 
-/// @return nullptr: nothing is stored. Throws Usage.
+/// Before anything is asked of the server. @return nullptr: nothing is stored. Throws Usage.
 std::unique_ptr<FrameStore> open_store(Session& session, const std::string& out, const std::string& encoding) {
   if (out.empty()) return nullptr;
-  if (encoding == "jpeg" || encoding == "png") {
+  const bool is_folder = encoding == "jpeg" || encoding == "png";
+  if (out.ends_with(".mp4")) {
+    throw Usage(fmt::format("--out: expected a {}, found {}; `tweenctl record start` makes films",
+                            is_folder ? "folder with " + encoding : "name such as film." + encoding, out));
+  }
+  if (is_folder) {
     if (out != "-") return std::make_unique<PictureFolder>(out);
     throw Usage("--out: expected a folder with " + encoding + ", found -; h264 and rgba can be written to standard output");
   }
-  if (out == "-" && session.options().json) {
-    throw Usage("--out: expected a file with --json, whose lines go to standard output, found -");
+  if (out == "-") {
+    if (session.options().json) {
+      throw Usage("--out: expected a file with --json, whose lines go to standard output, found -");
+    }
+    session.expect_no_terminal(encoding);
   }
   return std::make_unique<PayloadFile>(out, session.out());
 }
@@ -88,8 +88,10 @@ ExitCode watch_frames(Session& session, const Arguments& arguments) {
   const auto out = arguments.get<std::string>("out", "");
   const auto store = open_store(session, out, params.at("encoding").get<std::string>());
   PacketStream stream(session, params);
-  const auto count = arguments.get<std::uint64_t>("count", 0);
-  return store ? store_frames(session, stream, *store, out, count) : print_frames(session, stream, count);
+  if (store) return store_frames(session, stream, *store, out, arguments.get<std::uint64_t>("count", 0));
+  return print_packets(session, stream, arguments, [&](const Packet& packet, ClockUs age_us) {
+    return session.options().json ? frame_json(packet, age_us, "") : frame_text(packet, age_us, stream.layout());
+  });
 }
 
 }  // namespace tweend::cli

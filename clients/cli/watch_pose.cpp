@@ -49,15 +49,10 @@ ExitCode watch_pose(Session& session, const Arguments& arguments) {
   PacketStream stream(session, params);
   PoseReader reader(stream.layout());
   const std::string first = first_joint(stream.layout());
-  const auto count = arguments.get<std::uint64_t>("count", 0);
-  for (std::uint64_t seen = 0; count == 0 || seen < count; ++seen) {
-    const Packet packet = stream.next({});
-    const ClockUs age_us = stream.age_us(packet, steady_now_us());
+  return print_packets(session, stream, arguments, [&](const Packet& packet, ClockUs age_us) {
     const auto joints = reader.joints(packet);
-    const bool json = session.options().json;
-    if (!session.print_line(json ? pose_json(packet, reader, age_us) : pose_text(packet, reader, joints, first, age_us))) break;
-  }
-  return ExitCode::Done;
+    return session.options().json ? pose_json(packet, reader, age_us) : pose_text(packet, reader, joints, first, age_us);
+  });
 }
 
 }  // namespace tweend::cli

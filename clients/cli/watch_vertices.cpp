@@ -35,15 +35,10 @@ ExitCode watch_vertices(Session& session, const Arguments& arguments) {
   params.update(arguments.params);
   PacketStream stream(session, params);
   VerticesReader reader(stream.layout());
-  const auto count = arguments.get<std::uint64_t>("count", 0);
-  for (std::uint64_t seen = 0; count == 0 || seen < count; ++seen) {
-    const Packet packet = stream.next({});
-    const ClockUs age_us = stream.age_us(packet, steady_now_us());
+  return print_packets(session, stream, arguments, [&](const Packet& packet, ClockUs age_us) {
     const auto xyz = reader.positions(packet);
-    const bool json = session.options().json;
-    if (!session.print_line(json ? vertices_json(packet, xyz, age_us) : vertices_text(packet, xyz, age_us))) break;
-  }
-  return ExitCode::Done;
+    return session.options().json ? vertices_json(packet, xyz, age_us) : vertices_text(packet, xyz, age_us);
+  });
 }
 
 }  // namespace tweend::cli

@@ -57,6 +57,7 @@ void make_folder(const std::string& path) {
   std::error_code error;
   std::filesystem::create_directories(path, error);
   if (!error && !std::filesystem::is_directory(path, error)) error = std::make_error_code(std::errc::not_a_directory);
+  if (!error && access(path.c_str(), W_OK | X_OK) != 0) error = {errno, std::generic_category()};
   if (error) {
     throw Usage(fmt::format("can't make the folder {}: expected one, or a place for it, found: {}", path, error.message()));
   }

@@ -303,7 +303,7 @@ Status StreamOpenParams::check() const {
   TWEEND_TRY(only_of_frames(width.has_value(), "width"));
   TWEEND_TRY(only_of_frames(height.has_value(), "height"));
   TWEEND_TRY(only_of_frames(quality.has_value(), "quality"));
-  TWEEND_TRY(only_of_frames(adaptive.has_value(), "adaptive"));
+  TWEEND_TRY(only_of_frames(adaptive.value_or(false), "adaptive"));
   return only_of_frames(camera.has_value(), "camera");
 }
 

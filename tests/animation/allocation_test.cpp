@@ -1,12 +1,9 @@
 // The whole layer runs inside the frame loop: a call that succeeds must not touch the heap.
-// This program's operator new counts.
 
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstdint>
-#include <cstdlib>
-#include <new>
 #include <vector>
 
 #include "server/animation/blend_poses.hpp"
@@ -18,42 +15,15 @@
 #include "server/animation/vertex_normals.hpp"
 #include "server/animation/vertex_tangents.hpp"
 #include "tests/animation/random_tracks.hpp"
-
-namespace {
-
-thread_local std::size_t allocations = 0;
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  std::abort();
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
-void* operator new(std::size_t size, std::align_val_t alignment) {
-  ++allocations;
-  const auto step = static_cast<std::size_t>(alignment);
-  if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) return memory;
-  std::abort();
-}
-void operator delete(void* memory, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { std::free(memory); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/support/allocations.hpp"
 
 namespace tweend::animation {
 namespace {
 
 TEST(Allocation, TheCounterCounts) {
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   const std::vector<int> some(100);
-  EXPECT_GT(allocations, before) << some.size();
+  EXPECT_GT(test::allocations(), before) << some.size();
 }
 
 TEST(Allocation, SuccessTakesNoMemory) {
@@ -70,7 +40,7 @@ TEST(Allocation, SuccessTakesNoMemory) {
   const CubicBezier easing{0.25F, 0.1F, 0.25F, 1.0F};
   bool all_succeeded = true;
 
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   for (int quarter = 0; quarter <= 20; ++quarter) {
     const double t = quarter / 4.0;
     for (const Interpolation mode : {Interpolation::Step, Interpolation::Linear, Interpolation::CatmullRom}) {
@@ -82,7 +52,7 @@ TEST(Allocation, SuccessTakesNoMemory) {
   }
   all_succeeded = all_succeeded && compute_normals(stream, indices, normals);
   all_succeeded = all_succeeded && compute_tangents(stream, normals, texcoords, indices, tangents);
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations(), before);
   EXPECT_TRUE(all_succeeded);
 }
 
@@ -113,7 +83,7 @@ TEST(Allocation, PlayingASkeletonTakesNoMemory) {
                            MorphTargetView{0, 100, {stream, stream, {}}}};
   bool all_succeeded = true;
 
-  const std::size_t before = allocations;
+  const std::size_t before = test::allocations();
   for (int i = 0; i <= 20; ++i) {
     pose.reset(40, 2);
     set.sample(i / 10.0, Interpolation::CatmullRom, pose);
@@ -124,7 +94,7 @@ TEST(Allocation, PlayingASkeletonTakesNoMemory) {
     all_succeeded = all_succeeded && status;
     morph_vertices(targets, std::array{0.5F, 0.25F}, {positions, normals, {}});
   }
-  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(test::allocations(), before);
   EXPECT_TRUE(all_succeeded);
 }
 

@@ -70,6 +70,19 @@ TEST(Failure, TheServerNeverAnswers) {
   EXPECT_EQ(run.err, "tweenctl: no answer to playback.get in time: nothing arrived in time\n");
 }
 
+TEST(Failure, ARecordingMayTakeItsTimeToEnd) {
+  // Who asked later, and waits as long, has given up before this one is answered.
+  const auto other_gives_up = [] {
+    const auto other = test::run_cli({{"playback.get", Json::object(), ""}}, {"status", "--timeout", "0.1"});
+    EXPECT_EQ(other.code, ExitCode::NoServer);
+  };
+  const Json saved{{"name", "a.mp4"}, {"frames", 90}, {"bytes", 1200}};
+  const auto run = test::run_cli({{"record.stop", {{"record", 3}}, test::answer(saved), false, other_gives_up}},
+                                 {"record", "stop", "3", "--timeout", "0.1"});
+  EXPECT_EQ(run.code, ExitCode::Done) << run.err;
+  EXPECT_EQ(run.out, "a.mp4 saved: 90 pictures, 1200 bytes\n");
+}
+
 TEST(Failure, AnAnswerOfAnotherShape) {
   const auto run = test::run_cli({test::answers("playback.get", Json::object(), {{"players", 3}, {"x", 1}})}, {"status"});
   EXPECT_EQ(run.code, ExitCode::NoServer);

@@ -31,6 +31,7 @@ struct FakeServer::Asio {
       if (line.empty()) return complain("the client left instead of asking for " + reaction.method);
       const Json request = Json::parse(line, nullptr, false);
       check(request, reaction);
+      if (reaction.before) reaction.before();
       std::string bytes = reaction.bytes;
       const std::string id = request.is_object() ? request.value("id", Json()).dump() : "null";
       for (std::size_t at = 0; (at = bytes.find("$ID", at)) != std::string::npos;) bytes.replace(at, 3, id);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,6 +18,7 @@ struct Reaction {
   Json params;         ///< expected
   std::string bytes;   ///< `$ID` stands for the id of the request
   bool closes = false;
+  std::function<void()> before = {};  ///< is done before anything is written
 };
 
 /// A server for one connection on a free port that plays a script: each request must be the one expected next.

@@ -43,8 +43,7 @@ TEST(Output, EditsAreASentenceWithTheRevision) {
   EXPECT_EQ(
       output({"export", "a.glb"}, "asset.export", R"({"name":"a.glb","format":"glb"})", R"({"name":"a.glb","bytes":1200})"),
       "a.glb saved: 1200 bytes\n");
-  EXPECT_EQ(output({"record", "start", "a.mp4"}, "record.start", R"({"name":"a.mp4","format":"mp4"})",
-                   R"({"record":3,"start_us":17})"),
+  EXPECT_EQ(output({"record", "start", "a.mp4"}, "record.start", R"({"name":"a.mp4"})", R"({"record":3,"start_us":17})"),
             "recording 3 to a.mp4: `record stop 3` ends it\n");
   EXPECT_EQ(output({"record", "stop", "3"}, "record.stop", R"({"record":3})", R"({"name":"a.mp4","frames":90,"bytes":1200})"),
             "a.mp4 saved: 90 pictures, 1200 bytes\n");
@@ -64,6 +63,30 @@ TEST(Output, ListsAreTables) {
             "keyframe  time  interpolation\n       1     0  linear\nduration 0 s, closed\n");
   EXPECT_EQ(output({"stats"}, "server.stats", "{}", R"({"scenes":1,"net":{"bytes":2}})"),
             "figure     value\nscenes         1\nnet.bytes      2\n");
+  EXPECT_EQ(output({"record", "list"}, "record.list", "{}", R"({"recordings":[{"recording":3,"name":"a.mp4","fps":30}]})"),
+            "recording  name   fps\n        3  a.mp4   30\n");
+  EXPECT_EQ(output({"record", "list"}, "record.list", "{}", R"({"recordings":[]})"), "no recordings\n");
+  EXPECT_EQ(output({"--json", "record", "list"}, "record.list", "{}", R"({"recordings":[]})"), "{\"recordings\":[]}\n");
+}
+
+TEST(Output, DurationsAreSummedUp) {
+  const char* stats = R"({"scenes":1,"a_count":7,
+    "d_bucket{le=\"0.001\"}":0,"d_bucket{le=\"0.002\"}":10,"d_bucket{le=\"0.01\"}":200,"d_bucket{le=\"+Inf\"}":200,
+    "d_sum":1.5,"d_count":200,
+    "e_bucket{le=\"0.5\"}":3,"e_bucket{le=\"+Inf\"}":4,"e_sum":9,"e_count":4,
+    "f_bucket{le=\"0.5\"}":0,"f_bucket{le=\"+Inf\"}":0,"f_sum":0,"f_count":0})";
+  // Of d: the 100th is the 90th of 190 between 2 and 10 ms, and the 198th the 188th. Of e: the 2nd is the 2nd of 3 up to 500
+  // ms.
+  EXPECT_EQ(output({"stats"}, "server.stats", "{}", stats),
+            "figure   value\n"
+            "scenes       1\n"
+            "a_count      7\n"
+            "\n"
+            "duration  count  median ms  p99 ms\n"
+            "d           200       5.79  9.92\n"
+            "e             4     333.33  > 500\n"
+            "f             0          -  -\n");
+  EXPECT_EQ(Json::parse(output({"--json", "stats"}, "server.stats", "{}", stats)), Json::parse(stats));
 }
 
 TEST(Output, NamesAreOneALine) {

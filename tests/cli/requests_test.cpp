@@ -92,12 +92,18 @@ INSTANTIATE_TEST_SUITE_P(
     Recordings, Requests,
     testing::Values(Case{{"record", "start", "a.mp4", "--size", "640x360", "--fps", "29.97"},
                          "record.start",
-                         R"({"name":"a.mp4","format":"mp4","width":640,"height":360,"fps":29.97})",
+                         R"({"name":"a.mp4","width":640,"height":360,"fps":29.97})",
                          {}},
                     Case{{"--scene", "two", "record", "start", "walk", "--eye", "0,0,5", "--width", "33"},
                          "record.start",
                          R"({"scene":"two","name":"walk","format":"png_sequence","width":33,"camera":{"eye":[0,0,5]}})",
                          {}},
+                    Case{{"record", "start", "walk.avi"}, "record.start", R"({"name":"walk.avi"})", {}},
+                    Case{{"record", "start", "walk.1", "--format", "png_sequence"},
+                         "record.start",
+                         R"({"name":"walk.1","format":"png_sequence"})",
+                         {}},
+                    Case{{"record", "list"}, "record.list", "{}", {}},
                     Case{{"record", "stop", "3"}, "record.stop", R"({"record":3})", {}}));
 
 INSTANTIATE_TEST_SUITE_P(

@@ -10,11 +10,12 @@ namespace tweend::cli::test {
 
 namespace {
 
-Outcome run_in_strings(std::vector<std::string> arguments, const std::string& in, std::size_t columns) {
+Outcome run_in_strings(std::vector<std::string> arguments, const std::string& in, std::size_t columns,
+                       bool out_is_terminal = false) {
   std::istringstream input(in);
   std::ostringstream out;
   std::ostringstream err;
-  const ExitCode code = run(std::move(arguments), Io{input, out, err, columns});
+  const ExitCode code = run(std::move(arguments), Io{input, out, err, columns, out_is_terminal});
   return {code, out.str(), err.str()};
 }
 
@@ -34,6 +35,8 @@ Outcome run_with(std::vector<Reaction> script, std::vector<std::string> argument
 Outcome run_alone(std::vector<std::string> arguments, const std::string& in) {
   return run_in_strings(std::move(arguments), in, 0);
 }
+
+Outcome run_alone_to_terminal(std::vector<std::string> arguments) { return run_in_strings(std::move(arguments), {}, 0, true); }
 
 Outcome run_cli(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in) {
   return run_with(std::move(script), std::move(arguments), in, 0);

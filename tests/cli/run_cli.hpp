@@ -18,6 +18,8 @@ struct Outcome {
 
 /// Runs tweenctl in this process, without a server.
 [[nodiscard]] Outcome run_alone(std::vector<std::string> arguments, const std::string& in = {});
+/// The same where standard output is a terminal.
+[[nodiscard]] Outcome run_alone_to_terminal(std::vector<std::string> arguments);
 
 /// Runs it against a server that plays this script, and checks that the script was played to its end.
 [[nodiscard]] Outcome run_cli(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in = {});

@@ -90,17 +90,49 @@ TEST(WatchFrames, WritesVideoAloneToStandardOutput) {
 
 TEST(WatchFrames, VideoThatCantBeWrittenLosesNothing) {
   const Folder folder;
-  const auto run = run_cli(frame_stream({{"encoding", "h264"}}, frame_packet(1, 2, "unit")),
-                           {"watch", "frames", "--encoding", "h264", "-o", folder.path("none/o.h264")});
-  EXPECT_EQ(run.code, ExitCode::Refused);
-  EXPECT_EQ(run.err, "tweenctl: can't write " + folder.path("none/o.h264") +
-                         ": expected a place for 4 B, found: No such file or directory\n");
+  const auto run = test::run_alone({"watch", "frames", "--encoding", "h264", "-o", folder.path("none/o.h264")});
+  EXPECT_EQ(run.code, ExitCode::Usage);
+  EXPECT_EQ(run.out, "");
+  EXPECT_EQ(run.err, "tweenctl: --out: expected a file that can be written, found " + folder.path("none/o.h264") +
+                         ": No such file or directory\n");
   std::ofstream(folder.path("kept")) << "kept";
   const auto end = test::event("stream.ended", {{"stream", 4}, {"reason", "gone"}});
   const auto ended =
       run_cli(frame_stream({{"encoding", "h264"}}, end), {"watch", "frames", "--encoding", "h264", "-o", folder.path("kept")});
   EXPECT_EQ(ended.code, ExitCode::Refused);
   EXPECT_EQ(folder.read("kept"), "kept");
+  (void)run_cli(frame_stream({{"encoding", "h264"}}, end), {"watch", "frames", "--encoding", "h264", "-o", folder.path("new")});
+  EXPECT_EQ(folder.list(), "kept,");
+}
+
+TEST(WatchFrames, AFullPlaceEndsIt) {
+  const auto run = run_cli(frame_stream({{"encoding", "h264"}}, frame_packet(1, 2, "unit")),
+                           {"watch", "frames", "--encoding", "h264", "-o", "/dev/full"});
+  EXPECT_EQ(run.code, ExitCode::Refused);
+  EXPECT_EQ(run.err, "tweenctl: can't write /dev/full: expected a place for 4 B, found: No space left on device\n");
+}
+
+TEST(WatchFrames, AStreamIsNoFilm) {
+  const Folder folder;
+  const auto complaint = [&](const std::string& encoding) {
+    const auto run = test::run_alone({"watch", "frames", "--encoding", encoding, "-o", folder.path("film.mp4")});
+    EXPECT_EQ(run.code, ExitCode::Usage);
+    EXPECT_EQ(folder.list(), "");
+    return run.err;
+  };
+  const std::string rest = ", found " + folder.path("film.mp4") + "; `tweenctl record start` makes films\n";
+  EXPECT_EQ(complaint("h264"), "tweenctl: --out: expected a name such as film.h264" + rest);
+  EXPECT_EQ(complaint("jpeg"), "tweenctl: --out: expected a folder with jpeg" + rest);
+}
+
+TEST(WatchFrames, ATerminalIsNoPlaceForVideo) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"watch", "frames", "--encoding", "rgba", "-o", "-"}, {"frame", "-"}}) {
+    const auto run = test::run_alone_to_terminal(arguments);
+    EXPECT_EQ(run.code, ExitCode::Usage);
+    EXPECT_EQ(run.out, "");
+    EXPECT_NE(run.err.find("found a terminal: name a file, or add `> FILE` or `| PROGRAM`\n"), std::string::npos) << run.err;
+  }
 }
 
 TEST(WatchFrames, StandardOutputIsForOneThing) {

@@ -16,15 +16,20 @@ ANNOUNCEMENT = b'{"jsonrpc":"2.0","method":"stream.packet"'
 BINARY_FRAME, TEXT_FRAME = 0x82, 0x81
 
 
+def name_of(params):
+    """What is watched, in a few words: `frames h264`."""
+    return " ".join([params["kind"]] + [params[p] for p in ("encoding", "delivery") if p in params])
+
+
 class Reader:
     """A connection with one stream on it."""
 
     def __init__(self, port, speaker, manner, params):
-        self.manner, self.kind = manner, params["kind"]
+        self.manner, self.what = manner, name_of(params)
         self.speaker = speaker(port, receive_buffer=None if manner == HEALTHY else SMALL_BUFFER)
         self.sock = self.speaker.sock
         self.head = self.line_head if speaker is LineClient else self.frame_head
-        self.sequences = []  # (sequence, media time, clock reading)
+        self.packets = []  # (sequence, bytes)
         self.skip = 0  # bytes of a payload that are still to come
         self.rest = b""  # the beginning of something
         id = self.speaker.send("stream.open", **params)
@@ -40,7 +45,7 @@ class Reader:
         except BlockingIOError:
             return False
         if not data:
-            raise ProtocolError(f"the server closed the connection of a {self.manner} reader of {self.kind}")
+            raise ProtocolError(f"the server closed the connection of a {self.manner} reader of {self.what}")
         self.feed(data)
         return len(data) == limit
 
@@ -79,8 +84,8 @@ class Reader:
             return False
         header = HEADER.unpack_from(data, at)
         if header[0] != MAGIC:
-            raise ProtocolError(f"a packet of {self.kind} that begins {data[at:at + HEADER.size].hex()}")
-        self.sequences.append((header[6], header[7], header[8]))
+            raise ProtocolError(f"a packet of {self.what} that begins {data[at:at + HEADER.size].hex()}")
+        self.packets.append((header[6], HEADER.size + header[10]))
         return True
 
 
@@ -106,11 +111,11 @@ def run(pipe, port, manners, streams, seconds):
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     die_with_parent()
     try:
-        readers = [Reader(port, (LineClient, WebSocketClient)[i // 3 % 2], manner, streams[i % len(streams)])
+        readers = [Reader(port, (LineClient, WebSocketClient)[i // len(streams[manner]) % 2], manner, streams[manner][i % len(streams[manner])])
                    for manner, count in manners.items() for i in range(count)]
         pipe.send("ready")
         drain(readers, seconds)
-        pipe.send([(r.manner, r.kind, r.sequences) for r in readers])
+        pipe.send([(r.manner, r.what, r.packets) for r in readers])
         pipe.recv()  # they stay until they are sent away
     except BaseException as error:
         pipe.send(error)
@@ -122,7 +127,7 @@ class Crowd:
 
     def __init__(self, port, manners, streams, seconds):
         """@param manners  how many of each, by manner
-        @param streams  what is asked for, in turn: parameters of stream.open"""
+        @param streams  what those of each manner ask for, in turn: parameters of stream.open"""
         context = multiprocessing.get_context("fork")
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=run, args=(theirs, port, manners, streams, seconds), daemon=True)
@@ -141,11 +146,12 @@ class Crowd:
         if self.said(PATIENCE_S * 4) != "ready":
             raise AssertionError("the crowd began with something else")
 
-    def running(self):
-        return not self.pipe.poll()
+    def running(self, seconds=0):
+        """Whether it has not ended, nor does so within so many seconds."""
+        return not self.pipe.poll(seconds)
 
     def result(self):
-        """[(manner, kind, [(sequence, media time, clock reading)])] once it has ended; it stays connected until close()."""
+        """[(manner, what it watches, [(sequence, bytes)])] once it has ended; it stays connected until close()."""
         return self.said(PATIENCE_S)
 
     def close(self):

@@ -7,11 +7,23 @@ from client import ProtocolError
 from pictures import Picture
 
 
-def run(*command):
-    done = subprocess.run([*map(str, command)], capture_output=True, timeout=60)
+def run(*command, stdin=b""):
+    done = subprocess.run([*map(str, command)], input=stdin, capture_output=True, timeout=60)
     if done.returncode or done.stderr:
         raise ProtocolError(f"{command[0]} says: {done.returncode} {done.stderr.decode(errors='replace')[:2000]}")
     return done.stdout
+
+
+def decoded(width, height, *source, stdin=b""):
+    """The pictures that FFmpeg reads from a source."""
+    data = run("ffmpeg", "-v", "warning", *source, "-f", "rawvideo", "-pix_fmt", "rgb24", "-fps_mode", "passthrough", "-", stdin=stdin)
+    size = width * height * 3
+    return [Picture(width, height, data[i:i + size]) for i in range(0, len(data), size)]
+
+
+def decode_h264(stream, width, height):
+    """The pictures of a raw stream of H.264, of which each decodes."""
+    return decoded(width, height, "-f", "h264", "-i", "-", stdin=stream)
 
 
 class Film:
@@ -34,11 +46,9 @@ class Film:
 
     def pictures(self):
         """All of them, decoded: as many as there are times."""
-        width, height = self.size
-        data = run("ffmpeg", "-v", "warning", "-i", self.path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-fps_mode", "passthrough", "-")
-        size = width * height * 3
-        assert len(data) == size * len(self.times), (len(data), size, len(self.times))
-        return [Picture(width, height, data[i:i + size]) for i in range(0, len(data), size)]
+        shown = decoded(*self.size, "-i", self.path)
+        assert len(shown) == len(self.times), (len(shown), len(self.times))
+        return shown
 
 
 def distance(a, b):

@@ -131,11 +131,19 @@ class TestCase(unittest.TestCase):
     assets = ()
     render = False
     starts_server = True
+    needs_h264 = False
 
     def setUp(self):
         if self.starts_server:
             self.server = self.serve(*self.options, assets=self.assets, render=self.render)
             self.c = self.server.line()
+            if self.needs_h264:
+                self.skip_without_h264()
+
+    def skip_without_h264(self):
+        """Builds with -DTWEEND_H264=OFF have none."""
+        if "frames:h264" not in self.c.call("server.hello")["capabilities"]:
+            self.skipTest("a build without H.264")
 
     def serve(self, *options, **kw):
         server = Server(*options, **kw)
@@ -202,6 +210,12 @@ class TestCase(unittest.TestCase):
         self.add_triangle(actor, **kw)
         at = {"scene": kw["scene"]} if "scene" in kw else {}
         return [self.add_key(t * t, actor=actor, time=t, **at) for t in range(keys)]
+
+    def add_waving_grid(self, side, heights=(0.0, 1.0), actor="grid"):
+        """Adds a mesh of side × side vertices that is at these heights at the times 0, 1, …"""
+        self.c.call("actor.add", actor=actor, mesh=grid(side))
+        for height in heights:
+            self.c.call("keyframe.add", actor=actor, vertices={"positions": grid(side, height)["positions"]})
 
     def player(self, **kw):
         players = self.c.call("playback.get", **kw)["players"]

@@ -1,11 +1,14 @@
 """Pictures in tests: PNG read and written, what a JPEG says of itself, and scenes of which the picture is known before."""
 import base64
 import math
+import random
+import re
 import struct
+import time
 import zlib
 
 import harness
-from client import ProtocolError
+from client import PATIENCE_S, Closed, HttpClient, ProtocolError, read_http_head
 
 PNG_SIGNATURE = b"\x89PNG\r\n\x1a\n"
 CHANNELS = {2: 3, 6: 4}  # of a PNG's colour type: RGB, RGBA
@@ -18,6 +21,24 @@ SIDE = 100
 SQUARE = {"width": SIDE, "height": SIDE}
 # Straight on, and in a SQUARE ten pixels a metre at z = 0.
 STRAIGHT = {"eye": [0, 0, 10], "target": [0, 0, 0], "fov_y": 2 * math.atan(0.5)}
+
+
+def rough_grid(n, seed):
+    """A surface upright before the camera, so rough that its picture is full of detail."""
+    noise = random.Random(seed)
+    mesh = harness.grid(n)
+    for i in range(0, len(mesh["positions"]), 3):
+        x, y, _ = mesh["positions"][i:i + 3]
+        mesh["positions"][i:i + 3] = [16 * (x - 0.5), 9 * (y - 0.5), noise.uniform(-0.15, 0.15)]
+    return mesh
+
+
+def add_rough(client):
+    """An actor of rough_grid() that fills pictures of 16:9, with two keyframes."""
+    client.call("actor.add", actor="rough", mesh=rough_grid(90, 1))
+    for seed in (1, 2):
+        client.call("keyframe.add", vertices={"positions": rough_grid(90, seed)["positions"]})
+    client.call("camera.set", eye=[0, 0, 10], target=[0, 0, 0], fov_y=0.7)
 
 
 def chunks(png):
@@ -157,6 +178,53 @@ def jpeg_size(data):
         at += 2 + length
 
 
+class Mjpeg(HttpClient):
+    """A stream of pictures: each is read together with the boundary behind it, for only then is it known to be whole."""
+
+    def __init__(self, port, target, headers=None, **kw):
+        super().__init__(port, **kw)
+        self.send_raw(self.request_bytes("GET", target, headers=headers))
+        self.status, self.headers = read_http_head(self, time.monotonic() + PATIENCE_S)
+        if self.status == 200:
+            kind = re.fullmatch(r"multipart/x-mixed-replace; *boundary=\"?([^\"\s;]+)\"?", self.headers["content-type"])
+            if not kind or "content-length" in self.headers or "transfer-encoding" in self.headers:
+                raise ProtocolError(f"no stream of pictures: {self.headers}")
+            self.boundary = b"--" + kind[1].encode() + b"\r\n"
+            self.expect(self.boundary, time.monotonic() + PATIENCE_S)
+
+    def expect(self, bytes_, deadline):
+        if (got := self.take(len(bytes_), deadline)) != bytes_:
+            raise ProtocolError(f"expected {bytes_}, got {got}")
+
+    def picture(self, seconds=PATIENCE_S):
+        """The next picture's JPEG."""
+        deadline = time.monotonic() + seconds
+        while (end := self.received.find(b"\r\n\r\n")) < 0:
+            self.fill(deadline)
+        lines = self.take(end + 4, deadline).decode().split("\r\n")[:-2]
+        headers = {name.lower(): value.strip() for name, value in (line.split(":", 1) for line in lines)}
+        if headers["content-type"] != "image/jpeg":
+            raise ProtocolError(f"a part with {headers}")
+        data = self.take(int(headers["content-length"]), deadline)
+        self.expect(b"\r\n" + self.boundary, deadline)
+        return data
+
+    def silent(self, seconds=0.2):
+        try:
+            self.fill(time.monotonic() + seconds)
+        except TimeoutError:
+            return not self.received
+        return False
+
+    def ends(self):
+        """Reads what is left."""
+        try:
+            while True:
+                self.fill(time.monotonic() + PATIENCE_S)
+        except Closed:
+            return bytes(self.received)
+
+
 class PictureCase(harness.TestCase):
     """A server that draws."""
     render = True
@@ -193,3 +261,21 @@ class PictureCase(harness.TestCase):
         """What is shown reaches from left, top to right, bottom."""
         got = picture.extent()
         self.assertLessEqual(max(abs(g - w) for g, w in zip(got, want)), tolerance, f"got {got}, want {want}")
+
+
+class GrowingCase(PictureCase):
+    """A growing quad, which the scene's camera looks straight at, and a client beside the one that watches."""
+    encoding = "png"  # of streams, unless said otherwise
+
+    def setUp(self):
+        super().setUp()
+        self.add_growing()
+        self.c.call("camera.set", **STRAIGHT)
+        self.other = self.server.line()
+
+    def open(self, client=None, **kw):
+        """A stream of small pictures: its number."""
+        return (client or self.c).call("stream.open", **{"kind": "frames", "encoding": self.encoding} | SQUARE | kw)["stream"]
+
+    def seek(self, t):
+        return self.other.call("playback.seek", time=t)

@@ -17,6 +17,8 @@ LONG = "width=1920&height=1080&to=75&fps=240"  # more than anybody waits for
 
 
 class Clip(pictures.PictureCase):
+    needs_h264 = True
+
     def setUp(self):
         super().setUp()
         self.root = self.folder()
@@ -49,6 +51,12 @@ class Clip(pictures.PictureCase):
             shown = Picture.of_png(self.file(time=k / 30, width=96, height=64))
             self.assertLess(distance(decoded[k], shown), 3, k)
         self.assertGreater(distance(decoded[0], decoded[59]), 4)
+
+    def test_as_many_pictures_as_the_server_allows(self):
+        few = self.serve("--max-film-pictures", 10, render=True)
+        few.line().call("actor.add", actor="quad", mesh=QUAD)
+        self.refuses(400, SMALL + "&to=2&fps=5.5", "10", "11", server=few)
+        self.assertEqual(few.http("GET", f"/scenes/main/clip.mp4?{SMALL}&to=2&fps=5")[0], 200)
 
     def test_a_stretch_at_another_rate(self):
         film = self.film(SMALL + "&from=0.5&to=1.5&fps=12.5")

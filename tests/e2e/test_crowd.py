@@ -1,5 +1,5 @@
-"""Readers that never read, readers that read slowly and healthy ones, all at once: what the healthy ones are given, what it
-costs the server in memory, and whether it answers meanwhile.
+"""Readers that never read, readers that read slowly and healthy ones, of packets that stand alone and of chains, all at once: what
+the healthy ones are given, what it costs the server in memory, and whether it answers meanwhile.
 
 TWEEND_CROWD_SECONDS says how long, 15 unless told; a minute is what a release is tried with:
 
@@ -18,16 +18,36 @@ MANNERS = {crowd.STUCK: 20, crowd.SLOW: 200, crowd.HEALTHY: 50}
 RUNGS = 7  # of pictures: readers that can't take them are sent smaller ones, which they share
 SIDE = 30  # 900 vertices
 JOINTS = 64
-PACKET_BYTES = 40 + 900 * 24  # of vertices, the largest ones
 # What a connection may make the server hold (docs/PROTOCOL.md, 5.3): itself, and of its one stream a packet that is being
-# written and one that waits. Nobody of the crowd asks for anything more, so that neither answers nor events wait.
+# written and one that waits, or a chain of eight, or with `every` all that were made, each counting for 4 KiB at least, up to 16 MiB.
+# Nobody of the crowd asks for anything more, so that neither answers nor events wait; but one pings.
 CONNECTION_BYTES = 64 << 10
-BUDGET_MIB = sum(MANNERS.values()) * (CONNECTION_BYTES + 2 * PACKET_BYTES) / (1 << 20)
+CHAIN = 8
+EVERY_BYTES, EVERY_LEAST_BYTES = 16 << 20, 4096
+ANSWERS_BYTES = 1 << 20
+PING = b"\x89\xfd" + bytes(4 + 125)  # as large as they may be, masked by zeros
 
 
-def share(sequences, newest):
+def share(packets, newest):
     """Of the packets produced since the first one that came."""
-    return len(sequences) / (newest - sequences[0][0] + 1)
+    return len(packets) / (newest - packets[0][0] + 1)
+
+
+class Pinger:
+    """A WebSocket that pings for all it can and never reads."""
+
+    def __init__(self, client):
+        self.sock, self.rest = client.sock, b""
+        self.sock.setblocking(False)
+
+    def ping(self):
+        """Until the server takes no more, or it has taken a few thousand."""
+        try:
+            for _ in range(16):
+                self.rest = self.rest or PING * 256
+                self.rest = self.rest[self.sock.send(self.rest):]
+        except OSError:  # it takes none, or it has cut us off
+            pass
 
 
 class CrowdTest(harness.TestCase):
@@ -35,18 +55,32 @@ class CrowdTest(harness.TestCase):
 
     def setUp(self):
         super().setUp()
-        rate = 10 if self.server.sanitized() else 30
-        self.streams = [{"kind": "vertices", "actor": "grid", "rate": rate},
-                        {"kind": "frames", "width": 320, "height": 180, "rate": rate},
-                        {"kind": "pose", "actor": "chain", "rate": rate}]
-        self.c.call("actor.add", actor="grid", mesh=harness.grid(SIDE))
-        for height in (0.0, 1.0):
-            self.c.call("keyframe.add", actor="grid", vertices={"positions": harness.grid(SIDE, height)["positions"]})
+        # A sanitizer slows all of it down, and its run is to show races and leaks.
+        rate, self.seconds = (10, min(SECONDS, 15)) if self.server.sanitized() else (30, SECONDS)
+        vertices, frames, pose = ({"kind": "vertices", "actor": "grid", "rate": rate},
+                                  {"kind": "frames", "width": 320, "height": 180, "rate": rate},
+                                  {"kind": "pose", "actor": "chain", "rate": rate})
+        chained = [frames | {"encoding": "h264"}, vertices | {"encoding": "meshopt"}, pose | {"encoding": "q16"}]
+        every = pose | {"delivery": "every"}
+        self.streams = [vertices, frames, pose, *chained]
+        self.asked = {crowd.HEALTHY: [vertices, frames, pose, every], crowd.SLOW: self.streams,
+                      crowd.STUCK: [*self.streams, *self.streams, every]}
+        self.waiting = {crowd.name_of(s): CHAIN if s in chained else 1 for s in self.streams} | {crowd.name_of(every): self.seconds * rate}
+        self.add_waving_grid(SIDE)
         joints = [{"name": f"j{i}"} | ({"parent": f"j{i - 1}", "translation": [0, 0.1, 0]} if i else {}) for i in range(JOINTS)]
         self.c.call("actor.add", actor="chain", skeleton={"joints": joints})
         for angle in (0.0, 0.5):
             self.c.call("keyframe.add", actor="chain", pose={f"j{i}": {"rotation": [0, 0, angle, 1]} for i in range(JOINTS)})
         self.c.call("playback.play", speed=0.05)
+
+    def budget_mib(self, largest):
+        """What the crowd and the one who pings may make the server hold, given the largest packet of each stream."""
+        def of_stream(what):
+            if what.endswith("every"):
+                return min(EVERY_BYTES, self.waiting[what] * max(largest[what], EVERY_LEAST_BYTES))
+            return (1 + self.waiting[what]) * largest[what]
+        streams = [s for manner, count in MANNERS.items() for s in (self.asked[manner] * count)[:count]]
+        return (CONNECTION_BYTES + ANSWERS_BYTES + sum(CONNECTION_BYTES + of_stream(crowd.name_of(s)) for s in streams)) / (1 << 20)
 
     def ask(self, round_trips_ms):
         """One request of each of some kinds; that all are answered is what calling them means."""
@@ -64,45 +98,50 @@ class CrowdTest(harness.TestCase):
             watcher.packet(number)
         watcher.close()
         before_mib, most_mib = self.server.rss_mib(), 0.0
-        people = crowd.Crowd(self.server.port, MANNERS, self.streams, SECONDS)
+        people = crowd.Crowd(self.server.port, MANNERS, self.asked, self.seconds)
         self.addCleanup(people.close)
         people.ready()
+        pinger = Pinger(self.server.websocket(receive_buffer=crowd.SMALL_BUFFER))
         round_trips_ms = {}
-        while people.running():
+        while people.running(seconds=0.01):  # a client that asks now and then
+            pinger.ping()
             self.ask(round_trips_ms)
             most_mib = max(most_mib, self.server.rss_mib())
-            time.sleep(0.01)  # a client that asks now and then; nothing depends on it
         readers = people.result()
         stats = self.c.call("server.stats")
         self.assertEqual(stats["tweend_streams"], sum(MANNERS.values()))
         self.assertLessEqual(stats["tweend_producers"], len(self.streams) + RUNGS - 1)
 
-        newest = {}
-        for _, kind, sequences in readers:
-            newest[kind] = max([newest.get(kind, 0)] + [s[0] for s in sequences])
+        newest, largest = {}, {}
+        for _, what, packets in readers:
+            newest[what] = max([newest.get(what, 0)] + [number for number, _ in packets])
+            largest[what] = max([largest.get(what, 0)] + [size for _, size in packets])
         shares = {}
-        for manner, kind, sequences in readers:
-            numbers = [s[0] for s in sequences]
-            self.assertEqual(numbers, sorted(set(numbers)), f"{manner} {kind}")
+        for manner, what, packets in readers:
+            numbers = [number for number, _ in packets]
+            self.assertEqual(numbers, sorted(set(numbers)), f"{manner} {what}")
+            if what.endswith("every") and numbers:
+                self.assertEqual(numbers[-1] - numbers[0] + 1, len(numbers), "none is skipped")
             if manner != crowd.STUCK:
-                self.assertGreater(len(numbers), 1, f"{manner} {kind}")
-                shares.setdefault((manner, kind), []).append(share(sequences, newest[kind]))
-        self.tell(shares, round_trips_ms, most_mib - before_mib, stats)
-        for (manner, kind), kept in shares.items():
+                self.assertGreater(len(numbers), 1, f"{manner} {what}")
+                shares.setdefault((manner, what), []).append(share(packets, newest[what]))
+        budget_mib = self.budget_mib(largest) * (6 if self.server.sanitized() else 1)
+        self.tell(shares, round_trips_ms, most_mib - before_mib, budget_mib, stats)
+        for (manner, what), kept in shares.items():
             if manner == crowd.HEALTHY:
-                self.assertGreaterEqual(min(kept), 0.98, f"{kind}: {sorted(kept)[:5]}")
+                self.assertGreaterEqual(min(kept), 0.98, f"{what}: {sorted(kept)[:5]}")
         self.assertGreater(stats["tweend_packets_skipped_total"], 100, "the others did skip")
-        self.assertLess(most_mib - before_mib, BUDGET_MIB * (6 if self.server.sanitized() else 1))
+        self.assertLess(most_mib - before_mib, budget_mib)
 
         people.close()
         wait_until(lambda: self.c.call("server.stats")["tweend_producers"] == 0, "the crowd is forgotten")
         self.assertEqual(self.c.call("server.stats")["tweend_streams"], 0)
 
-    def tell(self, shares, round_trips_ms, grown_mib, stats):
-        print(f"\n{SECONDS:g} s: {stats['tweend_packets_produced_total']} packets produced, {stats['tweend_packets_sent_total']} sent, "
-              f"{stats['tweend_packets_skipped_total']} skipped; the server grew by {grown_mib:.1f} of {BUDGET_MIB:.0f} MiB")
-        for (manner, kind), kept in sorted(shares.items()):
-            print(f"  {manner:8}{kind:10} of the packets produced came: worst {min(kept):.4f}, median {statistics.median(kept):.4f}")
+    def tell(self, shares, round_trips_ms, grown_mib, budget_mib, stats):
+        print(f"\n{self.seconds:g} s: {stats['tweend_packets_produced_total']} packets produced, {stats['tweend_packets_sent_total']} sent, "
+              f"{stats['tweend_packets_skipped_total']} skipped; the server grew by {grown_mib:.1f} of {budget_mib:.0f} MiB")
+        for (manner, what), kept in sorted(shares.items()):
+            print(f"  {manner:8}{what:17} of the packets produced came: worst {min(kept):.4f}, median {statistics.median(kept):.4f}")
         for method, times in round_trips_ms.items():
             times.sort()
             print(f"  {method:18}{len(times)} answered: median {statistics.median(times):.2f} ms, p99 {times[int(0.99 * len(times))]:.2f} ms")

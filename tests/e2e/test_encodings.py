@@ -2,13 +2,13 @@
 import math
 import os
 import struct
-import subprocess
 
 import harness
 import pictures
 from client import DISCONTINUITY, KEY, LAST
+from films import decode_h264
 from harness import wait_until
-from pictures import SQUARE, STRAIGHT, Picture
+from pictures import SIDE, SQUARE
 
 ARM = {"joints": [{"name": "root"}, {"name": "elbow", "parent": "root", "translation": [0, 1, 0]},
                   {"name": "hand", "parent": "elbow", "translation": [0, 0.5, 0]}]}
@@ -30,8 +30,10 @@ class Encodings(harness.TestCase):
                          encoding=encoding)
         self.refused(-32602, "stream.open", path="params.bitrate", kind="vertices", actor="tri", bitrate=100_000)
         self.refused(-32602, "stream.open", path="params.bitrate", kind="frames", encoding="h264", bitrate=100)
+        for params in ({"kind": "vertices", "actor": "tri"}, {"kind": "pose", "actor": "arm"}, {"kind": "vertices", "encoding": "q16", "actor": "tri"}):
+            self.refused(-32602, "stream.open", path="params.adaptive", adaptive=True, **params)
+            self.c.call("stream.open", adaptive=False, **params)
         self.refused(-32602, "stream.open", path="params.adaptive", kind="frames", encoding="png", adaptive=True)
-        self.refused(-32602, "stream.open", path="params.adaptive", kind="vertices", actor="tri", adaptive=False)
         self.refused(-32001, "stream.request_key", path="params.stream", stream=7)
 
     def test_q16_vertices_are_within_their_error(self):
@@ -121,32 +123,33 @@ class Encodings(harness.TestCase):
         wait_until(lambda: figure("readers") == [], "it is gone")
 
 
-class H264(pictures.PictureCase):
-    """FFmpeg reads what is sent, without a word."""
-
+class WithoutH264(pictures.PictureCase):
     def setUp(self):
+        self.assets = (self.folder(),)
         super().setUp()
-        self.add_growing()
-        self.c.call("camera.set", **STRAIGHT)
+        if "frames:h264" in self.c.call("server.hello")["capabilities"]:
+            self.skipTest("a build with H.264")
 
-    def open(self, client=None, **kw):
-        return (client or self.c).call("stream.open", **{"kind": "frames", "encoding": "h264"} | SQUARE | kw)
+    def test_what_needs_it_is_unavailable_and_the_rest_is_not(self):
+        self.add_growing()
+        self.refused(-32006, "stream.open", kind="frames", encoding="h264", **SQUARE)
+        self.refused(-32006, "record.start", name="a.mp4", **SQUARE)
+        self.assertEqual(self.server.http("GET", "/scenes/main/clip.mp4?width=96&height=64")[0], 503)
+        for encoding in ("jpeg", "png", "rgba"):
+            self.c.packet(self.c.call("stream.open", kind="frames", encoding=encoding, **SQUARE)["stream"])
+        started = self.c.call("record.start", name="folder", format="png_sequence", **SQUARE)
+        self.assertGreater(self.c.call("record.stop", record=started["record"])["frames"], 0)
+        self.assertEqual(os.listdir(self.assets[0]), ["folder"])
+
+
+class H264(pictures.GrowingCase):
+    """FFmpeg reads what is sent, without a word."""
+    needs_h264 = True
+    encoding = "h264"
 
     def decode(self, packets):
         """The pictures of these packets, in order."""
-        folder = self.folder()
-        source = os.path.join(folder, "stream.h264")
-        with open(source, "wb") as f:
-            f.writelines(p.payload for p in packets)
-        done = subprocess.run(["ffmpeg", "-v", "warning", "-f", "h264", "-i", source, "-fps_mode", "passthrough", f"{folder}/%04d.png"],
-                              capture_output=True, text=True)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
-        names = sorted(n for n in os.listdir(folder) if n.endswith(".png"))
-        shown = []
-        for name in names:
-            with open(os.path.join(folder, name), "rb") as f:
-                shown.append(Picture.of_png(f.read()))
-        return shown
+        return decode_h264(b"".join(p.payload for p in packets), SIDE, SIDE)
 
     def looks_like(self, picture, want):
         """But for what a lossy encoding does at edges."""
@@ -157,7 +160,7 @@ class H264(pictures.PictureCase):
         self.refused(-32602, "stream.open", path="params.height", kind="frames", encoding="h264", width=100, height=99)
 
     def test_a_stream_decodes_picture_for_picture(self):
-        opened = self.open(rate=60)
+        opened = self.c.call("stream.open", kind="frames", encoding="h264", rate=60, **SQUARE)
         self.assertRegex(opened["layout"]["codec"], r"^avc1\.[0-9a-f]{6}$")
         stream = opened["stream"]
         self.c.call("playback.play", speed=0.2, loop="repeat")
@@ -182,15 +185,15 @@ class H264(pictures.PictureCase):
 
     def test_whoever_joins_can_decode_at_once(self):
         self.c.call("playback.play", speed=0.1)
-        self.c.packet_where(lambda p: not p.flags & KEY, self.open()["stream"])
+        self.c.packet_where(lambda p: not p.flags & KEY, self.open())
         late = self.server.line()
-        stream = self.open(late)["stream"]
+        stream = self.open(late)
         packets = [late.packet(stream) for _ in range(10)]
         self.assertTrue(packets[0].flags & KEY)
         self.assertEqual(len(self.decode(packets)), 10)
 
     def test_a_seek_while_all_stands_still(self):
-        stream = self.open()["stream"]
+        stream = self.open()
         packets = [self.c.packet(stream)]
         for t in (0.5, 1.5):
             self.c.call("playback.seek", time=t)
@@ -200,21 +203,58 @@ class H264(pictures.PictureCase):
         for p, picture in zip(packets, shown, strict=True):
             self.looks_like(picture, self.picture(time=p.media_us / 1e6))
 
+    def bits_of_seconds(self, packets):
+        """Of all seconds that begin with one of these packets and lie among them."""
+        end_us = packets[-1].server_us
+        return [8 * sum(len(p.payload) for p in packets if 0 <= p.server_us - first.server_us < 1_000_000)
+                for first in packets if first.server_us + 1_000_000 <= end_us]
+
     def test_a_bit_rate_is_kept(self):
-        stream = self.open(bitrate=100_000, rate=30, width=320, height=240)["stream"]
-        self.c.call("playback.play", speed=3, loop="ping_pong")
-        packets = [self.c.packet(stream) for _ in range(90)]
-        for first in packets:
-            second = [p for p in packets if 0 <= p.server_us - first.server_us < 1_000_000]
-            self.assertLessEqual(8 * sum(len(p.payload) for p in second), 100_000)
+        self.c.call("actor.remove", actor="quad")
+        pictures.add_rough(self.c)
+        self.c.call("playback.play", speed=0.2, loop="ping_pong")
+        wide = {"width": 640, "height": 360, "rate": 30}
+        free, kept = self.open(**wide), self.open(bitrate=300_000, **wide)
+        packets = {free: [], kept: []}
+        while min(map(len, packets.values())) < 75:
+            packet = self.c.packet()
+            packets[packet.stream].append(packet)
+        usual = 8 * sum(len(p.payload) for p in packets[free]) / len(packets[free])
+        self.assertGreater(30 * usual, 2 * 300_000, "there is something to keep from")
+        self.assertLessEqual(max(self.bits_of_seconds(packets[kept])), 300_000)
 
     def test_fewer_bits_than_the_coarsest_pictures_take(self):
         least = 13_100 + 100 * 30 + 42 * 80 * 45
         asked = {"kind": "frames", "encoding": "h264", "width": 1280, "height": 720}
         self.refused(-32602, "stream.open", path="params.bitrate", bitrate=least - 1, **asked)
-        stream = self.open(bitrate=least, width=1280, height=720)["stream"]
+        stream = self.open(bitrate=least, width=1280, height=720)
         self.refused(-32602, "stream.update", path="params.rate", stream=stream, rate=31)
         self.c.call("stream.update", stream=stream, rate=29)
+
+    def test_another_rate_begins_anew(self):
+        stream = self.open(rate=30)
+        self.c.call("playback.play", speed=0.1)
+        packets = [self.c.packet_where(lambda p: not p.flags & KEY, stream)]
+        self.c.call("stream.update", stream=stream, rate=20)
+        while len([p for p in packets if p.flags & KEY]) < 2:
+            packets.append(self.c.packet(stream))
+        anew = next(i for i, p in enumerate(packets) if p.flags & KEY)
+        for period_us, run in ((1e6 / 30, packets[:anew]), (1e6 / 20, packets[anew + 1:])):
+            for a, b in zip(run, run[1:]):
+                turns = (b.server_us - a.server_us) / period_us
+                self.assertAlmostEqual(turns, round(turns), delta=0.01, msg=f"{anew} of {packets}")
+        self.assertEqual(len(self.decode(packets[anew:])), len(packets) - anew)
+
+    def test_a_quality_is_of_jpeg_alone(self):
+        for encoding in ("png", "h264", "rgba"):
+            answers = [self.open(encoding=encoding, **kw) for kw in ({}, {"quality": 1})]
+            payloads = [self.c.packet(stream).payload for stream in answers]
+            self.assertEqual(*payloads)
+        wait_until(lambda: self.c.call("server.stats")["tweend_producers"] == 3, "those of an encoding share a producer")
+
+    def test_a_server_tells_what_it_draws(self):
+        frames = {c for c in self.c.call("server.hello")["capabilities"] if c.startswith("frames:")}
+        self.assertEqual(frames, {"frames:jpeg", "frames:png", "frames:rgba", "frames:h264"})
 
 
 if __name__ == "__main__":

@@ -26,11 +26,6 @@ class BadLinks(harness.TestCase):
     def through(self, speaker=LineClient, **kw):
         return self.server.keep(speaker(self.proxy.port, **kw))
 
-    def add_grid(self):
-        self.c.call("actor.add", actor="grid", mesh=harness.grid(SIDE))
-        for height in (0.0, 1.0):
-            self.c.call("keyframe.add", actor="grid", vertices={"positions": harness.grid(SIDE, height)["positions"]})
-
     def stats(self):
         return self.c.call("server.stats")
 
@@ -105,7 +100,7 @@ class Slices(BadLinks):
 
 class Resets(BadLinks):
     def test_in_mid_packet_or_wherever_it_strikes(self):
-        self.add_grid()
+        self.add_waving_grid(SIDE)
         self.c.call("playback.play", speed=0.1)
         for speaker in SPEAKERS:
             for count in (1, 10_000, 30_000, 45_000, 60_001, 100_000):  # the layout takes 27 kB, each packet 22
@@ -155,7 +150,7 @@ class Resets(BadLinks):
         self.assertEqual([k["keyframe"] for k in keyframes], [answer["keyframe"]])
 
     def test_many_at_once(self):
-        self.add_grid()
+        self.add_waving_grid(SIDE)
         self.c.call("playback.play", speed=0.1)
         for _ in range(3):
             clients = [self.through(SPEAKERS[i % 2]) for i in range(20)]
@@ -171,7 +166,7 @@ class Resets(BadLinks):
 class Stalls(BadLinks):
     def setUp(self):
         super().setUp()
-        self.add_grid()
+        self.add_waving_grid(SIDE)
         self.c.call("playback.play", speed=0.01)
 
     def test_a_stream_goes_on_with_what_is_shown_now(self):
@@ -254,7 +249,7 @@ class Latency(BadLinks):
             self.assertEqual(packets[-1].sequence - packets[0].sequence, 19, "lag alone skips nothing")
 
     def test_who_has_said_all_still_hears_the_rest(self):
-        self.add_grid()
+        self.add_waving_grid(SIDE)
         self.proxy.change("down", latency_s=0.1, bytes_per_s=1_000_000)
         far = self.through()
         ids = [far.send("vertices.sample", time=i / 100) for i in range(10)]
@@ -267,7 +262,7 @@ class Latency(BadLinks):
 class HalfDead(BadLinks):
     def setUp(self):
         super().setUp()
-        self.add_grid()
+        self.add_waving_grid(SIDE)
         self.c.call("playback.play", speed=0.01)
 
     def test_a_viewer_that_has_gone_without_a_word(self):

@@ -12,19 +12,7 @@ ASIDE = STRAIGHT | {"eye": [6, 2, 8]}
 NOTHING_OPEN = {"tweend_streams": 0, "tweend_producers": 0}
 
 
-class FrameStreams(pictures.PictureCase):
-    def setUp(self):
-        super().setUp()
-        self.add_growing()
-        self.c.call("camera.set", **STRAIGHT)
-        self.other = self.server.line()
-
-    def open(self, client=None, **kw):
-        return (client or self.c).call("stream.open", **{"kind": "frames", "encoding": "png"} | SQUARE | kw)["stream"]
-
-    def seek(self, t):
-        return self.other.call("playback.seek", time=t)
-
+class FrameStreams(pictures.GrowingCase):
     def stats(self):
         return self.other.call("server.stats")
 

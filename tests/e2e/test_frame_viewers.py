@@ -5,27 +5,15 @@ import harness
 import pictures
 from client import LAST, Packet
 from harness import wait_until
-from pictures import SQUARE, STRAIGHT
+from pictures import STRAIGHT
 
 LEFT = STRAIGHT | {"eye": [-6, 2, 8]}
 RIGHT = STRAIGHT | {"eye": [6, 2, 8]}
 
 
-class Viewers(pictures.PictureCase):
-    def setUp(self):
-        super().setUp()
-        self.add_growing()
-        self.c.call("camera.set", **STRAIGHT)
-        self.other = self.server.line()
-
-    def open(self, client=None, **kw):
-        return (client or self.c).call("stream.open", **{"kind": "frames", "encoding": "png"} | SQUARE | kw)["stream"]
-
+class Viewers(pictures.GrowingCase):
     def look(self, stream, camera, client=None):
         self.assertEqual((client or self.c).call("stream.update", stream=stream, camera=camera), {})
-
-    def seek(self, t):
-        return self.other.call("playback.seek", time=t)
 
     def counts(self):
         stats = self.other.call("server.stats")

@@ -132,10 +132,7 @@ class Vanishing(harness.TestCase):
 
     def setUp(self):
         super().setUp()
-        mesh = harness.grid(60)
-        self.c.call("actor.add", actor="grid", mesh=mesh)
-        for height in (1.0, 2.0, 0.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(60, height)["positions"]})
+        self.add_waving_grid(60, (1.0, 2.0, 0.0))
         self.stream = self.c.call("stream.open", kind="vertices", rate=60)["stream"]
         self.c.call("playback.play")
         self.packets = []

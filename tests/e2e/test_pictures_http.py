@@ -1,5 +1,4 @@
 """Pictures by HTTP (section 7): frame.png, frame.jpg, and stream.mjpg as browsers, VLC and OpenCV read it."""
-import re
 import shutil
 import signal
 import subprocess
@@ -8,58 +7,11 @@ import unittest
 
 import harness
 import pictures
-from client import Closed, HttpClient, ProtocolError, read_http_head, PATIENCE_S
+from client import PATIENCE_S, read_http_head
 from harness import wait_until
-from pictures import Picture, jpeg_size
+from pictures import Mjpeg, Picture, jpeg_size
 
 SMALL = "width=100&height=100"
-
-
-class Mjpeg(HttpClient):
-    """A stream of pictures: each is read together with the boundary behind it, for only then is it known to be whole."""
-
-    def __init__(self, port, target, headers=None, **kw):
-        super().__init__(port, **kw)
-        self.send_raw(self.request_bytes("GET", target, headers=headers))
-        self.status, self.headers = read_http_head(self, time.monotonic() + PATIENCE_S)
-        if self.status == 200:
-            kind = re.fullmatch(r"multipart/x-mixed-replace; *boundary=\"?([^\"\s;]+)\"?", self.headers["content-type"])
-            if not kind or "content-length" in self.headers or "transfer-encoding" in self.headers:
-                raise ProtocolError(f"no stream of pictures: {self.headers}")
-            self.boundary = b"--" + kind[1].encode() + b"\r\n"
-            self.expect(self.boundary, time.monotonic() + PATIENCE_S)
-
-    def expect(self, bytes_, deadline):
-        if (got := self.take(len(bytes_), deadline)) != bytes_:
-            raise ProtocolError(f"expected {bytes_}, got {got}")
-
-    def picture(self, seconds=PATIENCE_S):
-        """The next picture's JPEG."""
-        deadline = time.monotonic() + seconds
-        while (end := self.received.find(b"\r\n\r\n")) < 0:
-            self.fill(deadline)
-        lines = self.take(end + 4, deadline).decode().split("\r\n")[:-2]
-        headers = {name.lower(): value.strip() for name, value in (line.split(":", 1) for line in lines)}
-        if headers["content-type"] != "image/jpeg":
-            raise ProtocolError(f"a part with {headers}")
-        data = self.take(int(headers["content-length"]), deadline)
-        self.expect(b"\r\n" + self.boundary, deadline)
-        return data
-
-    def silent(self, seconds=0.2):
-        try:
-            self.fill(time.monotonic() + seconds)
-        except TimeoutError:
-            return not self.received
-        return False
-
-    def ends(self):
-        """Reads what is left."""
-        try:
-            while True:
-                self.fill(time.monotonic() + PATIENCE_S)
-        except Closed:
-            return bytes(self.received)
 
 
 class Pictures(pictures.PictureCase):

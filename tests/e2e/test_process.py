@@ -169,9 +169,7 @@ class Ending(harness.TestCase):
                         c.fill(time.monotonic() + 10)
 
     def test_while_streaming_to_many(self):
-        self.c.call("actor.add", actor="grid", mesh=harness.grid(60))
-        for height in (0.0, 1.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(60, height)["positions"]})
+        self.add_waving_grid(60)
         self.c.call("playback.play")
         readers = [self.server.line(), self.server.line(), self.server.websocket()]
         stuck = [self.server.line(receive_buffer=4096) for _ in range(3)]

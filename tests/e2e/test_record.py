@@ -19,7 +19,7 @@ def shifted(x):
 
 
 class Recording(pictures.PictureCase):
-    render = True
+    needs_h264 = True
 
     def setUp(self):
         self.root = self.folder()
@@ -117,10 +117,16 @@ class Files(Recording):
         started = self.start(by=other, name="on.mp4")
         other.close()
         self.pass_by(100_000)
-        self.c.send("record.stop", record=started["record"])
-        self.assertIn("time_us", self.server.line().call("server.ping"))
-        wait_until(lambda: os.path.exists(self.path("on.mp4")), "the file")
-        self.assertGreaterEqual(len(Film(self.path("on.mp4")).times), 3)
+        # Beside it one of which much is still to be made when it is stopped.
+        long = self.start(name="long", format="png_sequence", fps=240, width=640, height=480)
+        self.pass_by(200_000)
+        stops = [self.c.send("record.stop", record=r["record"]) for r in (long, started)]
+        ping = self.c.send("server.ping")
+        self.assertEqual(self.c.read()["id"], ping, "it is answered before them, on the same connection")
+        frames = [self.c.answer(stop)["frames"] for stop in stops]
+        self.assertEqual(frames[0], len(os.listdir(self.path("long"))))
+        self.assertEqual(frames[1], len(Film(self.path("on.mp4")).times))
+        self.assertGreaterEqual(min(frames), 3)
 
 
 class Refusals(Recording):

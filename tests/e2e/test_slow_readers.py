@@ -11,9 +11,7 @@ SIDE = 80  # 6400 vertices, 154 kB a packet
 class SlowReaders(harness.TestCase):
     def setUp(self):
         super().setUp()
-        self.c.call("actor.add", actor="grid", mesh=harness.grid(SIDE))
-        for height in (0.0, 1.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(SIDE, height)["positions"]})
+        self.add_waving_grid(SIDE)
         self.c.call("playback.play", speed=0.001)
         self.stream = self.c.call("stream.open", kind="vertices", rate=60)["stream"]
 

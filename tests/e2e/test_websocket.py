@@ -82,10 +82,7 @@ class Messages(harness.TestCase):
             self.assertEqual(len(self.ws.packet(stream).payload), n * n * 24)
 
     def test_pings_are_answered_with_their_payload_amid_streaming(self):
-        mesh = harness.grid(50)
-        self.c.call("actor.add", actor="grid", mesh=mesh)
-        for height in (1.0, 0.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(50, height)["positions"]})
+        self.add_waving_grid(50, (1.0, 0.0))
         self.ws.call("stream.open", kind="vertices", rate=240)
         self.c.call("playback.play")
         sent = []
@@ -146,10 +143,7 @@ class Ending(harness.TestCase):
 
     def test_a_close_amid_streaming(self):
         """No packet follows the server's close frame (the client checks that), whoever begins."""
-        mesh = harness.grid(50)
-        self.c.call("actor.add", actor="grid", mesh=mesh)
-        for height in (1.0, 0.0):
-            self.c.call("keyframe.add", vertices={"positions": harness.grid(50, height)["positions"]})
+        self.add_waving_grid(50, (1.0, 0.0))
         self.c.call("playback.play")
         # Goodbye not said: the server waits for the client's close frame, with its streams open.
         for opcode, payload, code in ((CLOSE, b"\x03\xe8", 1000), (BINARY, b"x", 1003)):
