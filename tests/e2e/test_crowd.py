@@ -16,6 +16,7 @@ from harness import wait_until
 SECONDS = float(os.environ.get("TWEEND_CROWD_SECONDS", 15))
 MANNERS = {crowd.STUCK: 20, crowd.SLOW: 200, crowd.HEALTHY: 50}
 RUNGS = 7  # of pictures: readers that can't take them are sent smaller ones, which they share
+RUNG_BYTES = 2 << 20  # surfaces, pixels and packets of the producer of smaller ones, whoever watches
 SIDE = 30  # 900 vertices
 JOINTS = 64
 # What a connection may make the server hold (docs/PROTOCOL.md, 5.3): itself, and of its one stream a packet that is being
@@ -75,12 +76,14 @@ class CrowdTest(harness.TestCase):
 
     def budget_mib(self, largest):
         """What the crowd and the one who pings may make the server hold, given the largest packet of each stream."""
-        def of_stream(what):
+        def of_stream(manner, what):
+            if manner == crowd.HEALTHY:
+                return 2 * largest[what]
             if what.endswith("every"):
                 return min(EVERY_BYTES, self.waiting[what] * max(largest[what], EVERY_LEAST_BYTES))
             return (1 + self.waiting[what]) * largest[what]
-        streams = [s for manner, count in MANNERS.items() for s in (self.asked[manner] * count)[:count]]
-        return (CONNECTION_BYTES + ANSWERS_BYTES + sum(CONNECTION_BYTES + of_stream(crowd.name_of(s)) for s in streams)) / (1 << 20)
+        streams = [(manner, crowd.name_of(s)) for manner, count in MANNERS.items() for s in (self.asked[manner] * count)[:count]]
+        return ((RUNGS - 1) * RUNG_BYTES + CONNECTION_BYTES + ANSWERS_BYTES + sum(CONNECTION_BYTES + of_stream(*s) for s in streams)) / (1 << 20)
 
     def ask(self, round_trips_ms):
         """One request of each of some kinds; that all are answered is what calling them means."""
