@@ -129,6 +129,21 @@ class Files(Recording):
         self.assertGreaterEqual(min(frames), 3)
 
 
+    def test_they_are_found_again(self):
+        self.assertEqual(self.c.call("record.list"), {"recordings": []})
+        started = self.start(name="found.mp4", fps=25)
+        listed = self.server.line().call("record.list")["recordings"]
+        frames = listed[0].pop("frames")
+        self.assertGreaterEqual(frames, 0)
+        self.assertEqual(listed, [{"recording": started["record"], "scene": "main", "name": "found.mp4", "fps": 25,
+                                   "start_us": started["start_us"], "state": "running"}])
+        self.assertEqual(self.c.call("server.stats")["tweend_recordings"], 1)
+        self.pass_by(100_000)
+        self.c.call("record.stop", record=started["record"])
+        self.assertEqual(self.c.call("record.list"), {"recordings": []})
+        self.assertEqual(self.c.call("server.stats")["tweend_recordings"], 0)
+
+
 class Refusals(Recording):
     def refused_start(self, code, path=None, **kw):
         error = self.refused(code, "record.start", path=path, **SIZE | {"name": "a.mp4"} | kw)
@@ -178,7 +193,8 @@ class Refusals(Recording):
         c = server.line()
         self.start(by=c, name="a.mp4")
         first = self.start(by=c, name="b.mp4")
-        self.refused(-32004, "record.start", by=c, name="c.mp4", **SIZE)
+        error = self.refused(-32004, "record.start", by=c, name="c.mp4", **SIZE)
+        self.assertIn("(1, 2)", error.message)
         c.call("record.stop", record=first["record"])
         self.start(by=c, name="c.mp4")
 
