@@ -15,8 +15,9 @@ constexpr std::string_view kBucket = "_bucket{le=\"";
 void add_bucket(std::vector<Histogram>& histograms, const std::string& sample, double up_to) {
   const std::size_t mark = sample.find(kBucket);
   const std::string name = sample.substr(0, mark);
-  if (histograms.empty() || histograms.back().name != name) histograms.push_back({name, {}});
-  histograms.back().up_to.emplace_back(std::strtod(sample.c_str() + mark + kBucket.size(), nullptr), up_to);
+  auto at = std::find_if(histograms.begin(), histograms.end(), [&](const Histogram& h) { return h.name == name; });
+  if (at == histograms.end()) at = histograms.insert(at, {name, {}});
+  at->up_to.emplace_back(std::strtod(sample.c_str() + mark + kBucket.size(), nullptr), up_to);
 }
 
 }  // namespace
@@ -31,7 +32,8 @@ std::vector<Histogram> take_histograms(Json& stats) {
       others[name] = value;
     }
   }
-  for (const Histogram& histogram : histograms) {
+  for (Histogram& histogram : histograms) {
+    std::sort(histogram.up_to.begin(), histogram.up_to.end());  // JSON has no order of members; theirs may be the names'
     for (const char* of_all : {"_sum", "_count"}) others.erase(histogram.name + of_all);
   }
   stats = std::move(others);

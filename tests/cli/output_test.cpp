@@ -71,7 +71,7 @@ TEST(Output, ListsAreTables) {
 
 TEST(Output, DurationsAreSummedUp) {
   const char* stats = R"({"scenes":1,"a_count":7,
-    "d_bucket{le=\"0.001\"}":0,"d_bucket{le=\"0.002\"}":10,"d_bucket{le=\"0.01\"}":200,"d_bucket{le=\"+Inf\"}":200,
+    "d_bucket{le=\"+Inf\"}":200,"d_bucket{le=\"0.002\"}":10,"d_bucket{le=\"0.01\"}":200,"d_bucket{le=\"1e-03\"}":0,
     "d_sum":1.5,"d_count":200,
     "e_bucket{le=\"0.5\"}":3,"e_bucket{le=\"+Inf\"}":4,"e_sum":9,"e_count":4,
     "f_bucket{le=\"0.5\"}":0,"f_bucket{le=\"+Inf\"}":0,"f_sum":0,"f_count":0})";
