@@ -335,7 +335,7 @@ TEST(HubAfterDelivery, DoesNotWaitForAViewerWhoBecameSlow) {
   s.subscribe(kSquare, 1);
   s.sink->wait_for(1, 1);
   std::promise<void> go;  // the only worker waits for it: nothing is delivered
-  s.workers.post([&go] { go.get_future().wait(); });
+  s.workers.post([gone = go.get_future().share()] { gone.wait(); });
   auto told = after_delivery(s, s.stage.act(seek_to(0.5)).view, {});
   s.stage->post([&] { s.hub.retune(kSquare, slow, {s.sink, 1}); });
   s.settle();
