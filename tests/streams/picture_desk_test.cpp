@@ -40,6 +40,7 @@ class Desk : public testing::Test {
   void SetUp() override {
     if (!s_.renderer.device()) GTEST_SKIP() << s_.renderer.device().error().message;
   }
+  void TearDown() override { s_.settle(); }  // the strand may still be at the end of telling somebody
   template <class Act>
   void on_strand(Act act) {
     s_.stage->post(act);
