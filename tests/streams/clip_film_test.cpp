@@ -161,6 +161,8 @@ TEST_F(Films, KeepTheirPlacesBeyondTheQueue) {
   ASSERT_TRUE(held);
   films->stop();
   films.reset();
+  s.renderer.stop();
+  s.workers.stop();  // the film's maker, which ends where it ran, has let go of the queue
   EXPECT_FALSE(queue.expired());
   held->place.reset();
   EXPECT_TRUE(queue.expired());
