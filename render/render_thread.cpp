@@ -5,6 +5,8 @@
 #include <malloc.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <deque>
 #include <utility>
 
@@ -55,6 +57,11 @@ void keep_freed_memory() {
 class RenderThread::Loop {
  public:
   Loop(std::unique_ptr<Renderer> renderer, int samples) : renderer_(std::move(renderer)), targets_(samples) {}
+  ~Loop() {
+    for (const GLsync fence : kept_) glDeleteSync(fence);
+  }
+  Loop(const Loop&) = delete;
+  Loop& operator=(const Loop&) = delete;
 
   [[nodiscard]] bool busy() const noexcept { return !in_flight_.empty(); }
   [[nodiscard]] bool has_room() const noexcept { return in_flight_.size() < kInFlight; }
@@ -123,8 +130,13 @@ class RenderThread::Loop {
     bool reading;  ///< what the fence stands behind: reading, else drawing
   };
 
-  static GLsync fence() {
+  /// Mesa's llvmpipe (22.3) calls a fence passed while the thread that reports so still holds the fence's lock, and frees it
+  /// with its last reference, lock and all; a wait that succeeds lets go of one. So each fence gets a second sync object that
+  /// nobody waits for, until younger fences have passed: the threads report one after the other.
+  GLsync fence() {
     GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+    glDeleteSync(std::exchange(kept_[next_kept_], glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)));
+    next_kept_ = (next_kept_ + 1) % kept_.size();
     glFlush();
     return fence;
   }
@@ -138,6 +150,8 @@ class RenderThread::Loop {
   RenderTargetPool targets_;
   ReadbackPool readback_;
   std::deque<InFlight> in_flight_;
+  std::array<GLsync, 4 * kInFlight> kept_{};  ///< null: none yet, which deletes nothing
+  std::size_t next_kept_ = 0;
 };
 
 RenderThread::RenderThread(RenderOptions options) : wanted_(!options.off) {
