@@ -13,10 +13,10 @@ namespace {
 
 TEST(WorkerPool, RunsEveryTaskOnceOnItsOwnThreads) {
   constexpr int kThreads = 4, kEach = 250;
-  WorkerPool pool(3);
   std::vector<std::atomic<int>> runs(kThreads * kEach);
   std::latch done(kThreads * kEach);
   std::atomic<bool> on_a_callers_thread = false;
+  WorkerPool pool(3);
   {
     std::vector<std::jthread> callers;
     for (std::size_t t = 0; t < kThreads; ++t) {
@@ -38,8 +38,8 @@ TEST(WorkerPool, RunsEveryTaskOnceOnItsOwnThreads) {
 }
 
 TEST(WorkerPool, RunsAsManyTasksAtOnceAsItHasThreads) {
-  WorkerPool pool(3);
   std::latch all_started(3), done(3);
+  WorkerPool pool(3);
   for (int i = 0; i < 3; ++i) {
     pool.post([&] {
       all_started.arrive_and_wait();  // none gets past unless all three run
@@ -50,9 +50,9 @@ TEST(WorkerPool, RunsAsManyTasksAtOnceAsItHasThreads) {
 }
 
 TEST(WorkerPool, RunsATaskPostedByATaskAfterIt) {
-  WorkerPool pool(1);
   std::latch done(1);
   bool outer_ended = false, in_order = false;
+  WorkerPool pool(1);
   pool.post([&] {
     pool.post([&] {
       in_order = outer_ended;

@@ -78,7 +78,10 @@ class Keys : public testing::Test {
   }
 
   void make(StreamKey key) {
-    const Producer::Environment environment{stage_->strand(), mailbox_, stage_.metrics, [] {}, [] {}};
+    const auto made = [this] {
+      if (ask_with_each_) producer_->request_key();
+    };
+    const Producer::Environment environment{stage_->strand(), mailbox_, stage_.metrics, made, [] {}};
     const auto make_content = [this](ContentOwner& owner) { return std::make_shared<MadeUp>(shown_, stage_->strand(), owner); };
     stage_->post([this, key = std::move(key), environment, make_content] {
       producer_ = std::make_shared<Producer>(key, 1, environment, make_content);
@@ -103,9 +106,11 @@ class Keys : public testing::Test {
   std::shared_ptr<RecordingSink> sink_ = std::make_shared<RecordingSink>();
   std::shared_ptr<Producer> producer_;
   float next_ambient_ = 0.1F;
+  bool ask_with_each_ = false;  ///< for a key, with each packet; set before make()
 };
 
 TEST_F(Keys, ComeFirstAndOnceASecond) {
+  constexpr ClockUs kPeriodUs = 20'000;
   make(50.0);
   const auto packets = sink_->wait_for(1, 120);
   ASSERT_TRUE(is(packets[0], kFlagKey));
@@ -114,8 +119,7 @@ TEST_F(Keys, ComeFirstAndOnceASecond) {
   for (std::size_t i = 1; i < packets.size(); ++i) {
     const ClockUs at_us = packets[i]->header.server_us;
     if (is(packets[i], kFlagKey)) {
-      // Only where the machine was away a reading is missed, and a key comes late by no more than that.
-      EXPECT_GT(at_us - last_us, kSecond_us / 2);
+      EXPECT_GT(at_us - last_us, kSecond_us - kPeriodUs) << "the next one would be too late";
       last_us = at_us;
       ++keys;
     } else {
@@ -123,7 +127,6 @@ TEST_F(Keys, ComeFirstAndOnceASecond) {
     }
   }
   EXPECT_GE(keys, 3U);
-  EXPECT_LE(keys, 6U);
 }
 
 TEST_F(Keys, AreAllOfSlowStreams) {
@@ -162,24 +165,32 @@ TEST_F(Keys, AreFinalStates) {
 
 TEST_F(Keys, ComeSoonForWhoJoins) {
   make(100.0);
-  const auto before = sink_->wait_until(1, [](const Packet& p) { return (p.header.flags & kFlagKey) == 0; });
+  sink_->wait_until(1, [](const Packet& p) { return (p.header.flags & kFlagKey) == 0; });
   join(2);
   const auto joined = sink_->wait_until(2, [](const Packet& p) { return (p.header.flags & kFlagKey) != 0; });
-  EXPECT_LE(joined.back()->header.server_us - before.back()->header.server_us, kSecond_us * 3 / 4)
-      << "within a quarter of a second of its wish, and not with the second's own key";
+  ClockUs last_key_us = 0;  // before that one
+  for (const PacketPtr& packet : sink_->packets(1)) {
+    if (packet == joined.back()) break;
+    if (is(packet, kFlagKey)) last_key_us = packet->header.server_us;
+  }
+  // The first one may have been in the making when the wish came.
+  for (std::size_t i = 1; i + 1 < joined.size(); ++i) {
+    EXPECT_LT(joined[i]->header.server_us - last_key_us, 250'000)
+        << "a quarter of a second is enough, not the second's own key";
+  }
 }
 
 TEST_F(Keys, ThatAreAskedForAreAQuarterOfASecondApart) {
+  ask_with_each_ = true;
   make(200.0);
-  sink_->wait_for(1, 1);
-  // Somebody asks for one with each packet.
-  for (std::size_t asked = 1; asked <= 200; ++asked) {
-    sink_->wait_for(1, asked);
-    stage_->post([this] { producer_->request_key(); });
-  }
   std::vector<ClockUs> keys_us;
-  for (const PacketPtr& packet : sink_->packets(1)) {
-    if (is(packet, kFlagKey)) keys_us.push_back(packet->header.server_us);
+  for (const PacketPtr& packet : sink_->wait_for(1, 200)) {
+    const ClockUs at_us = packet->header.server_us;
+    if (is(packet, kFlagKey)) {
+      keys_us.push_back(at_us);
+    } else {
+      EXPECT_LT(at_us - keys_us.back(), 250'000) << "and no further";
+    }
   }
   ASSERT_GE(keys_us.size(), 3U);
   for (std::size_t i = 1; i < keys_us.size(); ++i) EXPECT_GE(keys_us[i] - keys_us[i - 1], 250'000);
@@ -222,8 +233,7 @@ TEST_F(Keys, OnALowerRungWhatComesToRestIsMadeAsGoodAsWasAskedForHalfASecondLate
   }
   // A change is shown as the rung has it again.
   change_something();
-  const auto more = sink_->wait_for(1, packets.size() + 1);
-  EXPECT_FALSE(refined(*more.back()));
+  EXPECT_FALSE(refined(*sink_->wait_for(1, packets.size() + 1)[packets.size()]));
 }
 
 TEST_F(Keys, OnALowerRungAChangeWhileAllStandsStillIsShownAsTheRungHasItAndThenBetter) {

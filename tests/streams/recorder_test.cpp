@@ -20,6 +20,8 @@ namespace {
 using test::Decoded;
 using test::kSmall;
 
+constexpr ClockUs kFrameUs = 20'000;  ///< of most recordings here
+
 /// What came of a recording's pictures, and a gate that they wait at.
 struct Kept {
   std::mutex mutex;
@@ -130,6 +132,22 @@ class Recorders : public testing::Test {
     stage->post([&] { promise.set_value(ask()); });
     return promise.get_future().get();
   }
+  /// Has the playing begin by itself, as soon as this machine can say so beforehand. @return when
+  ClockUs play_soon() {
+    const auto plays = [this](ClockUs as_of_us, const stage::EditDone&) {
+      const auto turn = test::RunningStage::every_player(
+          [](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.play(range, now_us); });
+      stage->carry_out("main", turn, as_of_us, [](const Result<stage::PlayersAnswer>&) {});
+    };
+    for (ClockUs ahead_us = 60'000;; ahead_us *= 2) {
+      const ClockUs at_us = steady_now_us() + ahead_us;
+      std::promise<bool> taken;
+      stage->schedule(
+          "main", "playback.play", {at_us, true}, plays, [](stage::ScheduledId, ClockUs) { return std::string(); },
+          [&taken](const Result<std::string>& answer) { taken.set_value(answer.has_value()); });
+      if (taken.get_future().get()) return at_us;  // else it was past already
+    }
+  }
   void play() {
     stage.act([](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.play(range, now_us); });
   }
@@ -199,7 +217,7 @@ TEST_F(Recorders, ListWhatRunsIsEndingAndHasEndedByItself) {
   limits.recorded_pictures = 2;
   const auto kept = std::make_shared<Kept>(), broken = std::make_shared<Kept>(), held = std::make_shared<Kept>();
   broken->fails_at = 1;
-  held->open = false;
+  for (const auto& one : {kept, broken, held}) one->open = false;
   const auto list = [this] { return on_strand([this] { return recorder.list(); }); };
   const auto until_state = [&](std::size_t i, RecordingState state) {
     for (auto now = list();; now = list()) {
@@ -210,6 +228,8 @@ TEST_F(Recorders, ListWhatRunsIsEndingAndHasEndedByItself) {
   const auto done = start(kept, "done"), failed = start(broken, "failed"), slow = start(held, "slow", 0.01);
   EXPECT_EQ(stage.metrics.recordings.load(), 3);
   EXPECT_EQ(list()[2].state, RecordingState::Running);
+  kept->let_through();
+  broken->let_through();
   auto stopped = stop_later(slow.id);
   until_state(0, RecordingState::Done);
   until_state(1, RecordingState::Failed);
@@ -244,23 +264,11 @@ TEST_F(Recorders, TellAllWhoStopOne) {
 
 // What acts by the clock acts as of its reading, however late: no picture may be drawn before that is known.
 TEST_F(Recorders, ShowWhatActsByItselfThoughTheStrandIsLate) {
-  constexpr ClockUs kFrameUs = 20'000;
   const auto kept = std::make_shared<Kept>();
   const stage::SceneViewPtr before = stage.view();
   const auto started = start(kept);
   kept->wait_for(1);
-  const ClockUs at_us = steady_now_us() + 60'000;
-  std::promise<void> scheduled;
-  stage->schedule(
-      "main", "playback.play", {at_us},
-      [this](ClockUs as_of_us, const stage::EditDone&) {
-        const auto plays = test::RunningStage::every_player(
-            [](stage::Player& player, const stage::PlayRange& range, ClockUs now_us) { player.play(range, now_us); });
-        stage->carry_out("main", plays, as_of_us, [](const Result<stage::PlayersAnswer>&) {});
-      },
-      [](stage::ScheduledId, ClockUs) { return std::string(); },
-      [&scheduled](const Result<std::string>&) { scheduled.set_value(); });
-  scheduled.get_future().wait();
+  const ClockUs at_us = play_soon();
   // The strand is held until long after that, and the stop comes before its timer.
   stage->post([at_us] {
     while (steady_now_us() < at_us + 250'000) std::this_thread::yield();
@@ -327,7 +335,7 @@ TEST_F(Recorders, MissNothingHoweverSlowTheEncoderIs) {
   play();
   const stage::SceneViewPtr after = stage.view();
   const ClockUs played_us = (*after->players)[0].anchor_us;
-  pace->wait_for(30);
+  pace->wait_for(static_cast<std::size_t>((played_us - paced.start_us) / kFrameUs) + 26);  // half a second of it
   auto stopped = stop_later(started.id);
   ASSERT_TRUE(stop(paced.id));
   EXPECT_NE(stopped.wait_for(std::chrono::seconds(0)), std::future_status::ready) << "its pictures are still to be made";
@@ -338,7 +346,7 @@ TEST_F(Recorders, MissNothingHoweverSlowTheEncoderIs) {
   EXPECT_GE(slow->pictures.size(), 30U);
   std::size_t moved = 0;
   for (std::size_t k = 0; k < slow->pictures.size(); ++k) {
-    const ClockUs at_us = started.start_us + static_cast<ClockUs>(k) * 20'000;
+    const ClockUs at_us = started.start_us + static_cast<ClockUs>(k) * kFrameUs;
     const Decoded want = picture_at(at_us < played_us ? before : after, at_us);
     EXPECT_EQ(test::mean_difference(slow->pictures[k], want), 0.0) << k;
     if (k > 0 && test::mean_difference(slow->pictures[k], slow->pictures[k - 1]) > 0.0) ++moved;
