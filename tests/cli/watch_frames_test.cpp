@@ -264,7 +264,7 @@ TEST(WatchFrames, AFileThatCantBeWrittenEndsIt) {
 TEST(WatchFrames, AnInterruptSumsUp) {
   const Folder folder;
   test::FakeServer server(frame_stream(kNothing, frame_packet(3, 0, jpeg())));
-  test::ChildProcess child({TWEENCTL, "--server", server.address(), "watch", "frames", "-o", folder.path(".")});
+  test::ChildProcess child(test::tweenctl(server, {"watch", "frames", "-o", folder.path(".")}));
   while (!std::filesystem::exists(folder.path("frame_000003.jpg"))) std::this_thread::yield();
   child.send_signal(SIGINT);
   EXPECT_NE(child.read_all().find(": 1 frame, - fps, 0 skipped"), std::string::npos);
