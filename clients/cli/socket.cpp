@@ -36,6 +36,7 @@ struct Socket::Asio {
     io.restart();
     if (deadline) {
       io.run_until(*deadline);
+      io.poll();  // who was kept from running past the deadline has not seen yet what came in time
     } else {
       io.run();
     }
@@ -50,13 +51,18 @@ struct Socket::Asio {
 
 Socket::Socket(const Endpoint& endpoint, Deadline deadline) : asio_(std::make_unique<Asio>()) {
   error_code error = net::error::operation_aborted;
-  asio_->resolver.async_resolve(
-      endpoint.host, std::to_string(endpoint.port), [&](error_code resolve_error, const tcp::resolver::results_type& found) {
-        error = resolve_error;
-        if (error) return;
-        net::async_connect(asio_->socket, found,
-                           [&](error_code connect_error, const tcp::endpoint&) { error = connect_error; });
-      });
+  error_code no_address;
+  if (const auto address = net::ip::make_address(endpoint.host, no_address); !no_address) {  // needs no resolver's thread
+    asio_->socket.async_connect({address, endpoint.port}, [&](error_code connect_error) { error = connect_error; });
+  } else {
+    asio_->resolver.async_resolve(
+        endpoint.host, std::to_string(endpoint.port), [&](error_code resolve_error, const tcp::resolver::results_type& found) {
+          error = resolve_error;
+          if (error) return;
+          net::async_connect(asio_->socket, found,
+                             [&](error_code connect_error, const tcp::endpoint&) { error = connect_error; });
+        });
+  }
   const bool in_time = asio_->finish(deadline);
   if (error) {
     throw NoServer(fmt::format("no server at {} ({}); is `tweend serve` running there?", to_string(endpoint),

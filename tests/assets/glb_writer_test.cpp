@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <vector>
 
 #include "server/model/evaluate.hpp"
 #include "tests/assets/glb_reading.hpp"
@@ -16,12 +17,24 @@ namespace {
 
 using Kind = RandomActors::Kind;
 
+/// The folder, without the files that an earlier run has left there.
+std::filesystem::path emptied(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  std::vector<std::filesystem::path> left;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) left.push_back(entry.path());
+  for (const auto& file : left) {
+    if (file.extension() == ".glb") std::filesystem::remove(file);
+  }
+  return folder;
+}
+
 /// Where the test is told to, exported files are kept for a validator to look at.
 void keep(const std::string& name, const std::string& file) {
-  const char* folder = std::getenv("TWEEND_GLB_DIR");
-  if (folder == nullptr) return;
-  std::filesystem::create_directories(folder);
-  std::ofstream(std::filesystem::path(folder) / (name + ".glb"), std::ios::binary) << file;
+  const char* told = std::getenv("TWEEND_GLB_DIR");
+  if (told == nullptr) return;
+  static const std::filesystem::path folder = emptied(told);
+  std::ofstream out(folder / (name + ".glb"), std::ios::binary);
+  EXPECT_TRUE(out << file << std::flush) << name;
 }
 
 /// Times all over the clip, and beside its keys. A float of the file holds a time to 6e-8 of it, and a jump takes 2 µs: nothing

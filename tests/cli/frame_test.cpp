@@ -154,8 +154,9 @@ TEST(Frame, AFullDiskLeavesNothingBehind) {
   const Folder folder;
   test::FakeServer server({renders_png()});
   // No file may grow past 0 blocks, which write() then tells as a full disk would.
-  test::ChildProcess child({"bash", "-c", R"(trap '' XFSZ; ulimit -f 0; exec "$@" 2>&1)", "bash", TWEENCTL, "--server",
-                            server.address(), "frame", folder.path("a.png")});
+  auto command = test::tweenctl(server, {"frame", folder.path("a.png")});
+  command.insert(command.begin(), {"bash", "-c", R"(trap '' XFSZ; ulimit -f 0; exec "$@" 2>&1)", "bash"});
+  test::ChildProcess child(command);
   EXPECT_EQ(child.read_all(),
             "tweenctl: can't write " + folder.path("a.png") + ": expected a place for 67 B, found: File too large\n");
   EXPECT_EQ(child.wait(), 1);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <sstream>
 
 #include "clients/cli/program.hpp"
@@ -21,8 +22,7 @@ Outcome run_in_strings(std::vector<std::string> arguments, const std::string& in
 
 Outcome run_with(std::vector<Reaction> script, std::vector<std::string> arguments, const std::string& in, std::size_t columns) {
   FakeServer server(std::move(script));
-  arguments.insert(arguments.begin(), {"--server", server.address()});
-  Outcome outcome = run_in_strings(std::move(arguments), in, columns);
+  Outcome outcome = run_in_strings(speaking_to(server, std::move(arguments)), in, columns);
   // A client that never came would be waited for in vain.
   if (outcome.code != ExitCode::Usage) {
     EXPECT_EQ(server.complaints(), "");
@@ -31,6 +31,20 @@ Outcome run_with(std::vector<Reaction> script, std::vector<std::string> argument
 }
 
 }  // namespace
+
+std::vector<std::string> speaking_to(const FakeServer& server, std::vector<std::string> arguments) {
+  // A wait's own --timeout is another: how long it waits once it has an answer.
+  const bool says_how_long = std::ranges::find(arguments, "--timeout") != arguments.end() && arguments.front() != "wait";
+  if (!says_how_long) arguments.insert(arguments.begin(), {"--timeout", "60"});
+  arguments.insert(arguments.begin(), {"--server", server.address()});
+  return arguments;
+}
+
+std::vector<std::string> tweenctl(const FakeServer& server, std::vector<std::string> arguments) {
+  arguments = speaking_to(server, std::move(arguments));
+  arguments.insert(arguments.begin(), TWEENCTL);
+  return arguments;
+}
 
 Outcome run_alone(std::vector<std::string> arguments, const std::string& in) {
   return run_in_strings(std::move(arguments), in, 0);

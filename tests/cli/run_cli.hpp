@@ -16,6 +16,11 @@ struct Outcome {
   std::string err;
 };
 
+/// Arguments that speak to this server, and wait for its answers for longer than it can take unless they say how long.
+[[nodiscard]] std::vector<std::string> speaking_to(const FakeServer& server, std::vector<std::string> arguments);
+/// The same for a process of its own.
+[[nodiscard]] std::vector<std::string> tweenctl(const FakeServer& server, std::vector<std::string> arguments);
+
 /// Runs tweenctl in this process, without a server.
 [[nodiscard]] Outcome run_alone(std::vector<std::string> arguments, const std::string& in = {});
 /// The same where standard output is a terminal.
