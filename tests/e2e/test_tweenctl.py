@@ -1,4 +1,5 @@
 """tweenctl against a running server, as one would use it."""
+import contextlib
 import json
 import os
 import re
@@ -117,8 +118,14 @@ class Session(Remote):
         self.assertEqual(self.player()["clip"], "default")
         wait_until(lambda: self.player()["clip"] == "still", "the next clip")
         self.ctl("stop")
-        process.terminate()
-        self.assertRegex(process.communicate(timeout=60)[0], r"marker.crossed +scene main, barb default: step at 0.5 s")
+        printed = bytearray()
+        os.set_blocking(process.stdout.fileno(), False)
+
+        def has_printed():
+            with contextlib.suppress(BlockingIOError):
+                printed.extend(os.read(process.stdout.fileno(), 65536))
+            return re.search(rb"marker.crossed +scene main, barb default: step at 0.5 s\n", printed)
+        wait_until(has_printed, "the crossing is printed")
         self.ctl("marker", "remove", marker)
         self.assertEqual(self.ctl("marker", "list"), "no markers\n")
 
