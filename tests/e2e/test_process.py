@@ -174,8 +174,8 @@ class Ending(harness.TestCase):
         self.c.call("playback.play")
         readers = [self.server.line(), self.server.line(), self.server.websocket()]
         stuck = [self.server.line(receive_buffer=4096) for _ in range(3)]
-        for c in readers:
-            c.call("stream.open", kind="vertices", rate=120)
+        for c in readers:  # at a rate at which nothing waits for them, even should they pause for a moment
+            c.call("stream.open", kind="vertices", rate=10)
             c.packet()
         for c in stuck:
             c.send("stream.open", kind="vertices", rate=120)

@@ -355,13 +355,17 @@ class Watching(Remote):
 class Completion(Remote):
     def complete(self, line):
         """What bash offers at the end of the line, from the program's own script."""
+        patient = os.path.join(self.folder(), "tweenctl")  # at a prompt nobody waits longer than a second
+        with open(patient, "w") as f:
+            f.write(f'#!/bin/sh\n[ "$1 $2" = "--timeout 1" ] && shift 2\nexec {TWEENCTL} --timeout 60 "$@"\n')
+        os.chmod(patient, 0o700)
         script = f"""
             source <({TWEENCTL} --server 127.0.0.1:{self.server.port} completion bash)
             f=$(complete -p tweenctl | sed 's/.*-F \\([^ ]*\\).*/\\1/')
             COMP_LINE=$1 COMP_POINT=${{#1}} COMP_WORDS=($1) COMP_TYPE=9
             [[ $1 == *' ' ]] && COMP_WORDS+=('')
             COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
-            "$f" {TWEENCTL} "${{COMP_WORDS[COMP_CWORD]}}" "${{COMP_WORDS[COMP_CWORD-1]:-}}"
+            "$f" {patient} "${{COMP_WORDS[COMP_CWORD]}}" "${{COMP_WORDS[COMP_CWORD-1]:-}}"
             printf '%s\\n' "${{COMPREPLY[@]}}" """
         done = subprocess.run(["bash", "-c", script, "bash", line], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done)
