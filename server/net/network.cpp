@@ -148,7 +148,7 @@ struct Network::Impl {
     for (SessionContext::Ender* session : sessions) {
       if (context->sessions.contains(session)) session->end_soon();
     }
-    const auto until = std::chrono::steady_clock::now() + 2 * kFarewell;  // sessions end by themselves well before
+    const auto until = std::chrono::steady_clock::now() + kFarewell * 3 / 2;  // sessions end by themselves before
     asio::steady_timer pause(io);
     while (context->services.metrics.connections.load() > 0 && std::chrono::steady_clock::now() < until) {
       pause.expires_after(std::chrono::milliseconds(5));

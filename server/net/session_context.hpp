@@ -53,7 +53,7 @@ class Registered : public SessionContext::Ender {
 inline constexpr std::chrono::seconds kFirstBytes{5};
 inline constexpr std::chrono::seconds kHttpIdle{30};
 /// How long answers may take to leave when the connection is to end.
-inline constexpr std::chrono::seconds kFarewell{2};
+inline constexpr std::chrono::seconds kFarewell{5};
 
 /// A client of the network without authentication: everyone may do everything.
 inline constexpr commands::Role kEveryonesRole = commands::Role::Admin;

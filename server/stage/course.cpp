@@ -14,7 +14,7 @@ void append(std::vector<Passed>& to, const model::ClipPtr& clip, const std::vect
 }  // namespace
 
 Course run_player(const model::Actor& actor, const Player& player, ClockUs from_us, ClockUs to_us, std::size_t most) {
-  Course course{player, {}, false, false, false};
+  Course course{player, {}, false, false, 0, false};
   std::vector<Crossing> crossed;
   for (;;) {
     const model::ClipPtr clip = clip_of(actor, course.player);
@@ -31,6 +31,7 @@ Course run_player(const model::Actor& actor, const Player& player, ClockUs from_
     course.moved = true;
     if (!course.player.move_on(actor, *end)) {
       course.ended = true;
+      course.ended_us = *end;
       return course;
     }
     from_us = *end;

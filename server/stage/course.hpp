@@ -24,6 +24,7 @@ struct Course {
   std::vector<Passed> passed;  ///< in order of time
   bool moved = false;          ///< to the next clip of its queue, or to its end
   bool ended = false;          ///< nothing is left to play
+  ClockUs ended_us = 0;        ///< and when, if so
   bool cut = false;            ///< more markers were passed than are told
 };
 

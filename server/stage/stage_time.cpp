@@ -43,7 +43,7 @@ void Stage::settle(ClockUs now_us) {
 void Stage::settle_scene(const std::string& scene, const SceneViewPtr& before, ClockUs now_us) {
   std::vector<MarkerCrossed> crossed;
   std::vector<std::size_t> moved;
-  std::vector<std::size_t> ended;
+  std::vector<std::pair<ClockUs, std::size_t>> ended;
   std::shared_ptr<Players> players;
   for (std::size_t i = 0; i < before->players->size(); ++i) {
     const Player& player = (*before->players)[i];
@@ -62,14 +62,15 @@ void Stage::settle_scene(const std::string& scene, const SceneViewPtr& before, C
     if (!players) players = std::make_shared<Players>(*before->players);
     (*players)[i] = std::move(course.player);
     moved.push_back(i);
-    if (course.ended) ended.push_back(i);
+    if (course.ended) ended.emplace_back(course.ended_us, i);
   }
   tell_passed(scene, std::move(crossed), now_us);
   if (!players) return;
   const auto view = std::make_shared<const SceneView>(SceneView{before->scene, std::move(players), next_serial_++});
   publish(scene, view);
   listener_->players_changed(view, moved, now_us);
-  for (const std::size_t i : ended) listener_->player_ended(view, i);
+  std::sort(ended.begin(), ended.end());  // who ends first is told first, however late this comes
+  for (const auto& [at_us, i] : ended) listener_->player_ended(view, i);
 }
 
 void Stage::tell_starts(const SceneViewPtr& before, const SceneViewPtr& after, ClockUs now_us) {

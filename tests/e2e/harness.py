@@ -104,10 +104,13 @@ class Server:
         with open(f"/proc/{self.process.pid}/maps") as f:
             return any("san.so" in line for line in f)
 
-    def stop(self, signal_number=signal.SIGTERM):
-        """Ends it as an administrator would; its exit code."""
+    def tell_to_stop(self, signal_number=signal.SIGTERM):
         if self.process.poll() is None:
             self.process.send_signal(signal_number)
+
+    def stop(self, signal_number=signal.SIGTERM):
+        """Ends it as an administrator would; its exit code."""
+        self.tell_to_stop(signal_number)
         return self.process.wait(PATIENCE_S)
 
     def close(self):
@@ -137,6 +140,7 @@ class TestCase(unittest.TestCase):
         if self.starts_server:
             self.server = self.serve(*self.options, assets=self.assets, render=self.render)
             self.c = self.server.line()
+            self.c.call("server.ping")  # who says nothing for long is taken for nobody
             if self.needs_h264:
                 self.skip_without_h264()
 
@@ -192,6 +196,17 @@ class TestCase(unittest.TestCase):
     def grew_less(self, before_mib, mib):
         """Since it held so much, the server has grown by less than that; a sanitizer holds a multiple of it."""
         self.assertLess(self.server.rss_mib() - before_mib, mib * (6 if self.server.sanitized() else 1))
+
+    def paced(self, packets, rate):
+        """Each was made at a reading of the rate's grid, or more than a period after the one before: the machine was away.
+        The shortest time between two, in periods."""
+        period_us = 1e6 / rate
+        gaps = []
+        for a, b in zip(packets, packets[1:]):
+            beside_us = abs(b.server_us - round(b.server_us / period_us) * period_us)
+            gaps.append((b.server_us - a.server_us) / period_us)
+            self.assertTrue(gaps[-1] > 0 and (beside_us < 2 or gaps[-1] >= 1), f"{b} comes {gaps[-1]:.3f} periods after {a}")
+        return min(gaps)
 
     def near(self, got, want, tolerance=1e-5):
         self.assertEqual(len(got), len(want))

@@ -29,9 +29,9 @@ ANSWERS_BYTES = 1 << 20
 PING = b"\x89\xfd" + bytes(4 + 125)  # as large as they may be, masked by zeros
 
 
-def share(packets, newest):
-    """Of the packets produced since the first one that came."""
-    return len(packets) / (newest - packets[0][0] + 1)
+def share(packets, numbers):
+    """Of the packets with these numbers, since the first one that came."""
+    return len(packets) / sum(number >= packets[0][0] for number in numbers)
 
 
 class Pinger:
@@ -115,9 +115,10 @@ class CrowdTest(harness.TestCase):
         self.assertEqual(stats["tweend_streams"], sum(MANNERS.values()))
         self.assertLessEqual(stats["tweend_producers"], len(self.streams) + RUNGS - 1)
 
-        newest, largest = {}, {}
-        for _, what, packets in readers:
-            newest[what] = max([newest.get(what, 0)] + [number for number, _ in packets])
+        given, largest = {}, {}  # numbers that any of the healthy has; bytes
+        for manner, what, packets in readers:
+            if manner == crowd.HEALTHY:
+                given.setdefault(what, set()).update(number for number, _ in packets)
             largest[what] = max([largest.get(what, 0)] + [size for _, size in packets])
         shares = {}
         for manner, what, packets in readers:
@@ -127,9 +128,13 @@ class CrowdTest(harness.TestCase):
                 self.assertEqual(numbers[-1] - numbers[0] + 1, len(numbers), "none is skipped")
             if manner != crowd.STUCK:
                 self.assertGreater(len(numbers), 1, f"{manner} {what}")
-                shares.setdefault((manner, what), []).append(share(packets, newest[what]))
+                produced = range(max([*given.get(what, ()), *numbers]) + 1)
+                shares.setdefault((manner, what), []).append(share(packets, given[what] if manner == crowd.HEALTHY else produced))
         budget_mib = self.budget_mib(largest) * (6 if self.server.sanitized() else 1)
         self.tell(shares, round_trips_ms, most_mib - before_mib, budget_mib, stats)
+        # What reached none of them was replaced while this machine was away, not while one of them was served badly.
+        for what, numbers in given.items():
+            self.assertGreaterEqual(len(numbers), 0.9 * (max(numbers) - min(numbers) + 1), what)
         for (manner, what), kept in shares.items():
             if manner == crowd.HEALTHY:
                 self.assertGreaterEqual(min(kept), 0.98, f"{what}: {sorted(kept)[:5]}")

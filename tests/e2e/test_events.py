@@ -152,7 +152,7 @@ class Endings(Watched):
         stream = self.w.call("stream.open", kind="vertices", rate=0.01)["stream"]
         self.w.packet(stream)
         self.c.call("playback.play", time=0, speed=10, loop="once")
-        self.w.event("playback.ended", seconds=10)
+        self.w.event("playback.ended")  # the stream's next packet is due in a hundred seconds
 
     def test_ended_without_any_stream(self):
         self.c.call("playback.play", time=0, speed=50, loop="once")
@@ -179,8 +179,8 @@ class Endings(Watched):
         self.assertNotIn("playback.ended", [m for m, _ in self.told()])
 
     def test_a_seek_or_pause_before_the_end_takes_it_back(self):
-        self.c.call("playback.play", time=0, speed=1, loop="once")
-        self.c.call("playback.set", speed=0.001)
+        self.c.call("playback.play", time=0, speed=0.01, loop="once")  # minutes: none of this comes too late
+        self.c.call("playback.set", speed=0.0001)
         self.c.call("playback.seek", time=1.99)
         self.c.call("playback.pause")
         self.c.call("playback.play", time=1.9, speed=10)

@@ -37,7 +37,7 @@ class Contents(FrameStreams):
         answer = client.read()
         self.assertEqual(answer["id"], id)
         self.assertEqual(set(answer["result"]), {"stream", "layout"})
-        packet = client.read(seconds=10)
+        packet = client.read()
         self.assertIsInstance(packet, Packet)
         self.assertEqual(packet.stream, answer["result"]["stream"])
         return answer["result"]["layout"], packet
@@ -47,7 +47,7 @@ class Contents(FrameStreams):
         for client in (self.c, self.server.websocket()):
             for encoding, number in CODECS.items():
                 before = self.other.call("server.ping")["time_us"]
-                layout, packet = self.first_packet(client, encoding=encoding, rate=1, **SQUARE)
+                layout, packet = self.first_packet(client, encoding=encoding, rate=0.01, **SQUARE)
                 self.assertEqual(layout, {"width": 100, "height": 100, "codec": encoding})
                 self.assertEqual((packet.kind, packet.encoding, packet.media_us), (3, number, 500_000))
                 self.assertEqual(packet.flags & ~DISCONTINUITY, KEY | LAST)
@@ -157,7 +157,7 @@ class Pacing(FrameStreams):
             span = (packets[-1].server_us - packets[0].server_us) / 1e6
             produced = packets[-1].sequence - packets[0].sequence
             self.assertLessEqual(produced, span * rate + 1.5, f"never more than {rate} a second")
-            self.assertGreaterEqual(produced, span * rate / 4, "and not far fewer")
+            self.assertLessEqual(self.paced(packets, rate), 4, "and not far fewer")
             sequences = [p.sequence for p in packets]
             self.assertEqual(sequences, sorted(set(sequences)))
             self.c.call("stream.close", stream=stream)

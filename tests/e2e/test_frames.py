@@ -161,14 +161,13 @@ class Times(pictures.PictureCase):
             self.assertEqual(answer["time"], time)
 
     def test_while_it_plays_the_time_answered_is_the_picture_s(self):
-        start_us = self.c.call("playback.play", time=0, speed=0.5)["server_time_us"]
+        start_us = self.c.call("playback.play", time=0, speed=0.05)["server_time_us"]
         for _ in range(5):
             before = self.c.call("server.ping")["time_us"]
             answer = self.c.call("frame.render", **SQUARE)
             after = self.c.call("server.ping")["time_us"]
-            self.assertLessEqual((before - start_us) / 2e6, answer["time"] + 2e-6)
-            self.assertGreaterEqual((after - start_us) / 2e6, answer["time"] - 2e-6)
-            self.assertLess(answer["time"], 2, "the test took too long")
+            self.assertLessEqual((before - start_us) * 0.05e-6, answer["time"] + 2e-6)
+            self.assertGreaterEqual((after - start_us) * 0.05e-6, answer["time"] - 2e-6)
             again = self.c.call("frame.render", time=answer["time"], **SQUARE)
             self.assertEqual(again["base64"], answer["base64"])
 

@@ -189,7 +189,7 @@ class Rpc(harness.TestCase):
             body = PING[:-1] + b" " * (size - len(PING)) + b"}"
             request = c.request_bytes("POST", "/rpc", body, {"Expect": "100-continue"})
             c.send_raw(request[:-size])
-            self.assertEqual(c.read_answer(seconds=5)[0], 100)
+            self.assertEqual(c.read_answer()[0], 100)
             c.send_raw(body)
             self.assertEqual(json.loads(c.read_answer()[2])["id"], 1)
 

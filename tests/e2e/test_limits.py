@@ -1,4 +1,5 @@
 """Each limit is an option; one more than it allows is refused and changes nothing (section 5.3)."""
+import contextlib
 import json
 import os
 import struct
@@ -33,16 +34,7 @@ class Limits(harness.TestCase):
             self.refused(-32004, method, **params)
 
     def test_connections(self):
-        self.start("--max-connections", 3)
-        others = [self.server.line() for _ in range(2)]
-        for c in others:
-            c.call("server.ping")
-        for _ in range(3):
-            extra = self.server.line()
-            with self.assertRaises((Closed, ConnectionError)):
-                extra.call("server.ping")
-        self.c.call("server.ping")
-        others.pop().close()
+        self.server = self.serve("--max-connections", 3)
 
         def gets_in():
             c = LineClient(self.server.port)
@@ -52,6 +44,24 @@ class Limits(harness.TestCase):
                 return None
             finally:
                 c.close()
+
+        def first():
+            c = self.server.line()
+            with contextlib.suppress(ConnectionError):
+                if c.call("server.stats")["tweend_connections"] == 1:
+                    return c
+            c.close()
+            return None
+        self.c = wait_until(first, "who looked whether it was ready is gone")
+        others = [self.server.line() for _ in range(2)]
+        for c in others:
+            c.call("server.ping")
+        for _ in range(3):
+            extra = self.server.line()
+            with self.assertRaises((Closed, ConnectionError)):
+                extra.call("server.ping")
+        self.c.call("server.ping")
+        others.pop().close()
         wait_until(gets_in, "a place for a new connection")
 
     def test_streams(self):

@@ -1,6 +1,5 @@
 """Pictures by HTTP (section 7): frame.png, frame.jpg, and stream.mjpg as browsers, VLC and OpenCV read it."""
 import shutil
-import signal
 import subprocess
 import time
 import unittest
@@ -149,7 +148,7 @@ class Undrawn(harness.TestCase):
 class Streams(Pictures):
     def test_the_first_picture_comes_at_once_and_then_nothing_until_something_changes(self):
         stream = self.mjpeg()
-        self.assertEqual(stream.picture(seconds=10), self.file(format="jpeg"))
+        self.assertEqual(stream.picture(), self.file(format="jpeg"))
         self.assertTrue(stream.silent())
         for time_s in (0.5, 1, 1.5):
             self.c.call("playback.seek", time=time_s)
@@ -212,11 +211,8 @@ class Streams(Pictures):
         self.c.call("playback.pause")
         last = self.file(format="jpeg", quality=100, width=640, height=480)
         for stream in (good, *stuck):
-            for _ in range(60):
-                if stream.picture() == last:
-                    break
-            else:
-                self.fail("it never got to see what is shown in the end")
+            while stream.picture() != last:  # however many are still on their way; behind the last there is silence
+                pass
 
     def test_what_the_client_says_meanwhile_is_of_no_consequence(self):
         stream = self.mjpeg()
@@ -241,8 +237,7 @@ class Streams(Pictures):
             client.call("stream.open", kind="frames", width=64, height=64)
             client.packet()
         self.server.line(receive_buffer=8192).send("stream.open", kind="frames", encoding="rgba", width=640, height=480)
-        self.server.process.send_signal(signal.SIGTERM)
-        self.assertEqual(self.server.process.wait(8), 0)
+        self.assertEqual(self.server.stop(), 0)
         reading.ends()
 
     @unittest.skipUnless(shutil.which("ffmpeg"), "ffmpeg is not installed")

@@ -8,7 +8,7 @@ import threading
 import time
 
 import harness
-from client import Closed, Packet, request_json
+from client import PATIENCE_S, Closed, Packet, request_json
 from harness import TWEEND, lifted, wait_until
 
 
@@ -90,7 +90,8 @@ class CommandLine(harness.TestCase):
         self.assertEqual(process.stdout.readline(), f"http://[::1]:{port}/\n")
         with socket.create_connection(("::1", port), timeout=30) as s:
             s.sendall(request_json("server.ping", id=1) + b"\n")
-            self.assertIn(b"time_us", s.recv(1000))
+            with s.makefile("rb") as answers:
+                self.assertIn(b"time_us", answers.readline())
 
 
 class Starting(harness.TestCase):
@@ -104,7 +105,7 @@ class Starting(harness.TestCase):
 
     def test_the_address_is_printed_and_the_port_file_is_whole(self):
         server = self.serve()
-        self.assertIn(f"http://127.0.0.1:{server.port}/\n", server.log_text())
+        wait_until(lambda: f"http://127.0.0.1:{server.port}/\n" in server.log_text(), "the address, which is printed behind the file")
         with open(server.port_file) as f:
             self.assertEqual(f.read().strip(), str(server.port))
         self.assertEqual(server.http("GET", "/healthz")[0], 200)
@@ -166,15 +167,15 @@ class Ending(harness.TestCase):
             for c in clients:
                 with self.assertRaises((Closed, ConnectionError)):
                     while True:
-                        c.fill(time.monotonic() + 10)
+                        c.fill(time.monotonic() + PATIENCE_S)
 
     def test_while_streaming_to_many(self):
         self.add_waving_grid(60)
         self.c.call("playback.play")
         readers = [self.server.line(), self.server.line(), self.server.websocket()]
         stuck = [self.server.line(receive_buffer=4096) for _ in range(3)]
-        for c in readers:
-            c.call("stream.open", kind="vertices", rate=120)
+        for c in readers:  # at a rate at which nothing waits for them, even should they pause for a moment
+            c.call("stream.open", kind="vertices", rate=10)
             c.packet()
         for c in stuck:
             c.send("stream.open", kind="vertices", rate=120)

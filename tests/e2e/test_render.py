@@ -1,4 +1,5 @@
 """`tweend render` and `tweend doctor`, the programs without a port; and a server on a machine where nothing draws."""
+import contextlib
 import json
 import os
 import re
@@ -187,8 +188,12 @@ class Films(Rendering):
         program = subprocess.Popen([TWEEND, "render", f"{self.root}/wave", "--mp4", "a.mp4", "--to", "100000"], cwd=self.out,
                                    preexec_fn=harness.die_with_parent)
         descriptors = f"/proc/{program.pid}/fd"
-        wait_until(lambda: any(os.readlink(f"{descriptors}/{fd}").startswith(self.out) for fd in os.listdir(descriptors)
-                               if os.path.lexists(f"{descriptors}/{fd}")), "a file")
+
+        def is_here(fd):
+            with contextlib.suppress(FileNotFoundError):  # closed just now
+                return os.readlink(f"{descriptors}/{fd}").startswith(self.out)
+            return False
+        wait_until(lambda: any(map(is_here, os.listdir(descriptors))), "a file")
         program.kill()
         program.wait()
         self.assertEqual([n for n in os.listdir(self.out) if not n.startswith(".")], [])

@@ -52,10 +52,10 @@ class Contents(Streams):
 
     def test_the_first_packet_comes_at_once_right_after_the_answer(self):
         for _ in range(3):
-            id = self.c.send("stream.open", kind="vertices", rate=1)
+            id = self.c.send("stream.open", kind="vertices", rate=0.01)
             answer = self.c.read()
             self.assertEqual(answer["id"], id)
-            packet = self.c.read(seconds=10)
+            packet = self.c.read()  # long before the second is due
             self.assertEqual(packet.stream, answer["result"]["stream"])
             self.assertEqual((packet.kind, packet.encoding, packet.media_us, packet.flags & ~DISCONTINUITY), (2, 0, 0, KEY | LAST))
 
@@ -89,7 +89,7 @@ class Contents(Streams):
         self.seek(1)
         packet = self.c.packet(stream)
         self.assertEqual((packet.media_us, packet.flags), (1_000_000, KEY | DISCONTINUITY | LAST))
-        self.other.call("playback.play", speed=0.1)
+        self.other.call("playback.play", speed=0.01)
         packets = [self.c.packet(stream) for _ in range(5)]
         self.assertEqual([p.flags for p in packets if p.media_us > 1_000_000 and p.flags != KEY], [], "it just plays")
         self.other.call("playback.pause")
@@ -104,18 +104,19 @@ class Contents(Streams):
 
     def test_a_wrap_of_an_open_clip_is_a_discontinuity(self):
         stream = self.open(rate=60)
-        self.other.call("playback.play", time=1.9, speed=1)
-        packets = [self.c.packet(stream)]
-        while packets[-1].media_us == 0 or packets[-1].media_us >= 1_000_000:
-            packets.append(self.c.packet(stream))
-        self.assertTrue(packets[-1].flags & DISCONTINUITY)
+        self.other.call("playback.play", time=1.99, speed=0.0001)
+        self.c.packet_where(lambda p: p.media_us >= 1_990_000, stream)
+        self.other.call("playback.set", speed=0.1)  # it wraps soon, and then not for long
+        wrapped = self.c.packet_where(lambda p: p.media_us < 1_000_000, stream)
+        self.assertTrue(wrapped.flags & DISCONTINUITY)
         self.assertFalse(self.c.packet(stream).flags & DISCONTINUITY)
 
     def test_a_wrap_of_a_closed_clip_is_none(self):
         self.c.call("clip.update", clip="default", closed=True)  # 3 s long
         stream = self.open(rate=60)
-        self.other.call("playback.play", time=2.9, speed=1)
-        self.c.packet_where(lambda p: p.media_us > 2_900_000, stream)
+        self.other.call("playback.play", time=2.99, speed=0.0001)
+        self.c.packet_where(lambda p: p.media_us >= 2_990_000, stream)
+        self.other.call("playback.set", speed=0.1)
         packets = [self.c.packet(stream)]
         while packets[-1].media_us >= 1_000_000:
             packets.append(self.c.packet(stream))
@@ -141,8 +142,7 @@ class Pacing(Streams):
             span = (packets[-1].server_us - packets[0].server_us) / 1e6
             produced = packets[-1].sequence - packets[0].sequence
             self.assertLessEqual(produced, span * rate + 1.5, f"never more than {rate} a second")
-            gaps = sorted(b.server_us - a.server_us for a, b in zip(packets, packets[1:]))
-            self.assertAlmostEqual(gaps[0] % (1e6 / rate), 0 if gaps[0] % (1e6 / rate) < 5e5 / rate else 1e6 / rate, delta=2e5 / rate)
+            self.paced(packets, rate)
             self.c.call("stream.close", stream=stream)
 
     def test_the_default_is_thirty_a_second(self):
@@ -150,8 +150,8 @@ class Pacing(Streams):
         stream = self.open()
         self.c.packet(stream)
         packets = [self.c.packet(stream) for _ in range(10)]
-        gaps = [b.server_us - a.server_us for a, b in zip(packets, packets[1:])]
-        self.assertGreaterEqual(min(gaps), 25_000)
+        self.paced(packets, 30)
+        self.assertLessEqual(packets[-1].sequence - packets[0].sequence, (packets[-1].server_us - packets[0].server_us) * 30e-6 + 1.5)
 
     def test_sequences_count_what_was_produced(self):
         stream = self.open(rate=240)
@@ -221,12 +221,14 @@ class Handling(Streams):
         self.assertNotEqual(a, b)
         self.other.call("playback.play")
         seen = {a: [], b: []}
-        while min(len(s) for s in seen.values()) < 6:
+
+        def four_times_as_many():  # or nearly so, once the machine keeps up
             packet = self.c.packet()
             seen[packet.stream].append(packet.sequence)
+            return len(seen[b]) >= 6 and len(seen[a]) >= 2 * len(seen[b])
+        wait_until(four_times_as_many, "more packets of the one than of the other")
         for sequences in seen.values():
             self.assertEqual(sequences, sorted(set(sequences)))
-        self.assertGreater(len(seen[a]), len(seen[b]))
         self.c.call("stream.close", stream=a)
         self.c.settle()
         self.assertEqual({self.c.packet().stream for _ in range(5)}, {b})

@@ -1,4 +1,5 @@
 """tweenctl against a running server, as one would use it."""
+import contextlib
 import json
 import os
 import re
@@ -117,8 +118,14 @@ class Session(Remote):
         self.assertEqual(self.player()["clip"], "default")
         wait_until(lambda: self.player()["clip"] == "still", "the next clip")
         self.ctl("stop")
-        process.terminate()
-        self.assertRegex(process.communicate(timeout=60)[0], r"marker.crossed +scene main, barb default: step at 0.5 s")
+        printed = bytearray()
+        os.set_blocking(process.stdout.fileno(), False)
+
+        def has_printed():
+            with contextlib.suppress(BlockingIOError):
+                printed.extend(os.read(process.stdout.fileno(), 65536))
+            return re.search(rb"marker.crossed +scene main, barb default: step at 0.5 s\n", printed)
+        wait_until(has_printed, "the crossing is printed")
         self.ctl("marker", "remove", marker)
         self.assertEqual(self.ctl("marker", "list"), "no markers\n")
 
@@ -348,13 +355,17 @@ class Watching(Remote):
 class Completion(Remote):
     def complete(self, line):
         """What bash offers at the end of the line, from the program's own script."""
+        patient = os.path.join(self.folder(), "tweenctl")  # at a prompt nobody waits longer than a second
+        with open(patient, "w") as f:
+            f.write(f'#!/bin/sh\n[ "$1 $2" = "--timeout 1" ] && shift 2\nexec {TWEENCTL} --timeout 60 "$@"\n')
+        os.chmod(patient, 0o700)
         script = f"""
             source <({TWEENCTL} --server 127.0.0.1:{self.server.port} completion bash)
             f=$(complete -p tweenctl | sed 's/.*-F \\([^ ]*\\).*/\\1/')
             COMP_LINE=$1 COMP_POINT=${{#1}} COMP_WORDS=($1) COMP_TYPE=9
             [[ $1 == *' ' ]] && COMP_WORDS+=('')
             COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1))
-            "$f" {TWEENCTL} "${{COMP_WORDS[COMP_CWORD]}}" "${{COMP_WORDS[COMP_CWORD-1]:-}}"
+            "$f" {patient} "${{COMP_WORDS[COMP_CWORD]}}" "${{COMP_WORDS[COMP_CWORD-1]:-}}"
             printf '%s\\n' "${{COMPREPLY[@]}}" """
         done = subprocess.run(["bash", "-c", script, "bash", line], capture_output=True, text=True, timeout=60)
         self.assertEqual(done.returncode, 0, done)

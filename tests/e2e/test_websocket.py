@@ -160,9 +160,10 @@ class Ending(harness.TestCase):
             harness.wait_until(lambda: self.c.call("server.stats")["tweend_streams"] == 0, "its streams are gone")
         self.ws.call("stream.open", kind="vertices", rate=240)
         self.ws.packet()
-        self.assertEqual(self.server.stop(), 0)
-        self.ws.read_to_end()
+        self.server.tell_to_stop()
+        self.ws.read_to_end()  # meanwhile: who does not read is not waited for
         self.assertEqual(self.ws.close_code, 1001)
+        self.assertEqual(self.server.stop(), 0)
 
     def test_binary_messages_are_refused(self):
         self.ws.send_frame(BINARY, request_json("scene.create", {"scene": "a"}, 1))

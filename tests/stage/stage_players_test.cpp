@@ -276,6 +276,23 @@ TEST(StageEnd, ComesForEachActorOfTheSceneAtTheSameTime) {
                                                                              {Kind::PlayerEnded, 1}}));
 }
 
+TEST(StageEnd, OfThoseNoticedTogetherTheFirstIsToldFirst) {
+  RunningStage stage({scene_of("main", {square_actor("late", {{.keys = 2, .spacing_s = 0.02}}),
+                                        square_actor("early", {{.keys = 2, .spacing_s = 0.01}})})});
+  stage.start();
+  stage->change_players("main", RunningStage::every_player(&play_once), [](const Result<PlayersAnswer>&) {
+    const ClockUs both_are_over_us = steady_now_us() + 30'000;
+    while (steady_now_us() < both_are_over_us) continue;  // the strand is busy meanwhile
+  });
+  stage.wait_for(Kind::PlayerEnded, 2);
+  stage.settle();
+  std::vector<std::size_t> ended;
+  for (const auto& t : stage.told()) {
+    if (t.kind == Kind::PlayerEnded) ended.push_back(t.players[0]);
+  }
+  EXPECT_EQ(ended, (std::vector<std::size_t>{1, 0}));
+}
+
 TEST(StageEnd, ComesOnceForEachPlayerOfAllScenes) {
   RunningStage stage({scene_of("main", {square_actor("early", {{.keys = 2, .spacing_s = 0.001}}),
                                         square_actor("late", {{.keys = 2, .spacing_s = 0.03}})}),

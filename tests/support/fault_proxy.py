@@ -36,7 +36,7 @@ SEGMENT_BYTES = 1460  # as on an Ethernet: loopback's 64 KiB would fill such buf
 GRAIN_S = 0.01  # how much of a second of bandwidth goes out in one piece
 CATCH_UP_S = 0.02  # of lateness that is made up for: what was not used before that is lost, as on a real link
 SIOCOUTQ = termios.TIOCOUTQ
-PATIENCE_S = 10
+PATIENCE_S = 30
 
 
 @dataclasses.dataclass(frozen=True)

@@ -191,8 +191,10 @@ describe("two pages", () => {
     await other.page.locator("#loop").selectOption("once");
     await until("speed and loop are the other's", async () =>
       (await page.page.locator("#speed_exact").inputValue()) === "2" && (await page.page.locator("#loop").inputValue()) === "once");
+    await server.call("playback.set", { speed: 0.01 }); // so that it is seen to play
     await other.page.locator("#play").click();
     await page.playing(true);
+    await server.call("playback.set", { speed: 2 });
     await page.playing(false); // played out
     await page.stands_at(duration);
   });

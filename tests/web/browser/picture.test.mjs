@@ -57,7 +57,7 @@ test("the picture takes the shape of its place", async () => {
   await fits();
   const wide = (await shape()).place;
   await page.page.setViewportSize({ width: 800, height: 900 });
-  assert.ok((await shape()).place < wide);
+  await until("its place is narrower", async () => (await shape()).place < wide);
   await fits();
   await page.ready();
   await page.close();

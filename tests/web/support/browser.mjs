@@ -8,7 +8,7 @@ const kArguments = [
   "--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking",
   "--disable-component-update", "--disable-sync", "--enable-unsafe-swiftshader",
 ];
-const kPatience_ms = 15000;
+const kPatience_ms = 30000;
 const kPollEvery_ms = 40;
 
 export const kDesk = { viewport: { width: 1280, height: 800 } };

@@ -6,7 +6,7 @@ import { once } from "node:events";
 import { fileURLToPath } from "node:url";
 
 const kAssets = fileURLToPath(new URL("../../../assets", import.meta.url));
-const kStart_ms = 20000;
+const kStart_ms = 30000;
 
 export class ServerProcess {
   #process;
