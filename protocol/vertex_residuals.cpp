@@ -113,9 +113,9 @@ struct Sums {
   std::uint8_t low = 0;
   std::uint8_t high = 0;
 
-  void add(std::int16_t residual) noexcept {
-    low = static_cast<std::uint8_t>(low + residual);
-    high = static_cast<std::uint8_t>(high + ((residual + 128) >> 8));
+  /// What a residual adds to both, the high byte's in the high half.
+  [[nodiscard]] static std::uint16_t step(std::int16_t residual) noexcept {
+    return wrapped((residual & 0xFF) | ((residual + 128) & 0xFF00));
   }
   [[nodiscard]] std::uint16_t step_to(Sums next) const noexcept {
     const int low_step = static_cast<std::int8_t>(static_cast<std::uint8_t>(next.low - low));
@@ -124,23 +124,16 @@ struct Sums {
 };
 
 template <int kSpace>
-void write_block(const Remainder& remainder, std::size_t count, Sums& sums, std::byte* out) noexcept {
-  Sums local = sums;
-  for (std::size_t i = 0; i < count; ++i, out += kResidualStride) {
-    local.add(remainder.residual<kSpace>(i));
-    out[0] = std::byte{local.low};
-    out[kPlanes] = std::byte{local.high};
-  }
-  sums = local;
+void find_steps(const Remainder& remainder, std::size_t count, std::uint16_t* out) noexcept {
+  for (std::size_t i = 0; i < count; ++i) out[i] = Sums::step(remainder.residual<kSpace>(i));
 }
 
-void write_plane(const PlaneHistory& plane, int chosen, std::size_t first, std::size_t count, Sums& sums,
-                 std::byte* out) noexcept {
+void find_steps(const PlaneHistory& plane, int chosen, std::size_t first, std::size_t count, std::uint16_t* out) noexcept {
   const Remainder remainder(plane, first, count, chosen / static_cast<int>(kOrders));
   const int space = chosen % static_cast<int>(kOrders);
-  if (space == 0) return write_block<0>(remainder, count, sums, out);
-  if (space == 1) return write_block<1>(remainder, count, sums, out);
-  write_block<2>(remainder, count, sums, out);
+  if (space == 0) return find_steps<0>(remainder, count, out);
+  if (space == 1) return find_steps<1>(remainder, count, out);
+  find_steps<2>(remainder, count, out);
 }
 
 void read_plane(const PlaneHistory& plane, int chosen, std::size_t first, std::size_t count, Sums& sums,
@@ -184,19 +177,20 @@ VertexPlanes VertexHistory::planes(std::size_t slot) noexcept {
 
 void write_residuals(VertexHistory& history, bool key, std::span<std::byte> foretellings,
                      std::span<std::byte> residuals) noexcept {
-  std::array<Sums, kPlanes> sums{};
+  BlockSteps steps{};
+  RecordSums sums{};
   for (std::size_t block = 0; block < foretellings.size(); ++block) {
     const std::size_t first = block * kBlockVertices;
     const std::size_t count = std::min(kBlockVertices, history.vertices() - first);
-    std::byte* const out = residuals.data() + first * kResidualStride;
     unsigned nibbles = 0;
     for (std::size_t g = 0; g < kGroups.size(); ++g) {
       const std::uint8_t chosen = choose(history, kGroups[g], first, count, key);
       nibbles |= unsigned{chosen} << (4 * g);
       for (std::size_t k = kGroups[g].first; k < kGroups[g].first + kGroups[g].count; ++k) {
-        write_plane(plane_of(history, k), chosen, first, count, sums[k], out + k);
+        find_steps(plane_of(history, k), chosen, first, count, steps[k].data());
       }
     }
+    write_sums(steps, sums, residuals.subspan(first * kResidualStride, count * kResidualStride));
     foretellings[block] = static_cast<std::byte>(nibbles);
   }
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/vertex_quanta.hpp"
+#include "protocol/vertex_records.hpp"
 #include "server/base/result.hpp"
 
 namespace tweend::protocol {
@@ -38,11 +39,6 @@ struct Foretelling {
   std::uint8_t space = 0;  ///< 0 nothing, 1 the same as the vertex before, 2 going on as between the two before
 };
 
-/// Vertices of a block, which meshoptimizer's codec has too: a foretelling for its positions, one for its normals.
-inline constexpr std::size_t kBlockVertices = 256;
-/// Bytes of a vertex in meshoptimizer's hands: low bytes of x, y, z, normal x, y; high bytes of the same; two zeros.
-inline constexpr std::size_t kResidualStride = 12;
-
 [[nodiscard]] constexpr std::size_t block_count(std::size_t vertices) noexcept {
   return (vertices + kBlockVertices - 1) / kBlockVertices;
 }
@@ -50,7 +46,7 @@ inline constexpr std::size_t kResidualStride = 12;
 /// What is left of history.now() once foretold, each block in the way that leaves the least.
 /// @param key           whether the packets before don't count
 /// @param foretellings  shape [block_count()]: a byte each, as the packet carries it
-/// @param residuals     shape [n × kResidualStride]; each vertex's last two bytes are zeros and stay so
+/// @param residuals     shape [n × kResidualStride]; all of it is written
 void write_residuals(VertexHistory& history, bool key, std::span<std::byte> foretellings,
                      std::span<std::byte> residuals) noexcept;
 
