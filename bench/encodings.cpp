@@ -165,7 +165,7 @@ void race_vertices(const bench::MovingMesh& mesh, std::vector<bench::Claim>& cla
   std::printf("   %6.2f %6.2f %6.1f %6.0f\n", race.ns(0), race.ns(1), race.ns(2), race.ns(3));
   if (mesh.name == "sphere") {
     claims.push_back({"vertices_meshopt_bytes_per_vertex", sizes.mean, 4.0});
-    // 40 ns beside deflate's 415, as both are on a quiet machine; 34 to 40 were found, of which meshoptimizer alone takes 25.
+    // 40 ns beside deflate's 415, as both are on a quiet machine; 34 to 38 were found, of which meshoptimizer alone takes 28.
     claims.push_back({"vertices_meshopt_encode_vs_deflate", race.ratio(2, 3), 0.096});
     claims.push_back({"vertices_q16_encode_vs_memcpy", race.ratio(1, 0), 5.0});
   }
