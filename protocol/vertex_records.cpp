@@ -46,20 +46,20 @@ HWY_INLINE hn::Vec<Bytes> in_order(hn::Vec<Bytes> by_turns) {
 HWY_INLINE void eight_vertices(const BlockSteps& steps, std::size_t v, hn::Vec<Bytes>& sums, std::uint8_t* out) {
   static_assert(VertexPlanes::kCount == 5);
   const Words d;
-  const auto plane = [&](std::size_t k) { return hn::LoadU(d, steps[k].data() + v); };
-  const auto write = [&](auto record) {
+  const auto plane = [&](std::size_t k) HWY_ATTR { return hn::LoadU(d, steps[k].data() + v); };
+  const auto write = [&](auto record) HWY_ATTR {
     sums = hn::Add(sums, hn::BitCast(Bytes(), record));
     hn::StoreU(in_order(sums), Bytes(), out);
     out += kResidualStride;
   };
   // Two vertices of the first four planes, and of the last one.
-  const auto two = [&](auto four, auto last) {
+  const auto two = [&](auto four, auto last) HWY_ATTR {
     const auto a = hn::BitCast(Quads(), four);
     const auto b = hn::BitCast(Quads(), last);
     write(hn::InterleaveLower(Quads(), a, b));
     write(hn::InterleaveUpper(Quads(), a, b));
   };
-  const auto four = [&](auto xy, auto zu, auto w) {
+  const auto four = [&](auto xy, auto zu, auto w) HWY_ATTR {
     const auto a = hn::BitCast(Pairs(), xy);
     const auto b = hn::BitCast(Pairs(), zu);
     const auto c = hn::BitCast(Pairs(), w);

@@ -132,7 +132,8 @@ class RenderThread::Loop {
 
   /// Mesa's llvmpipe (22.3) calls a fence passed while the thread that reports so still holds the fence's lock, and frees it
   /// with its last reference, lock and all; a wait that succeeds lets go of one. So each fence gets a second sync object that
-  /// nobody waits for, until younger fences have passed: the threads report one after the other.
+  /// nobody waits for, until younger fences have passed: the threads report one after the other. Pictures so large that
+  /// llvmpipe draws them in several goes have fences between that nobody can keep.
   GLsync fence() {
     GLsync fence = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
     glDeleteSync(std::exchange(kept_[next_kept_], glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0)));

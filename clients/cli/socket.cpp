@@ -50,17 +50,22 @@ struct Socket::Asio {
 };
 
 Socket::Socket(const Endpoint& endpoint, Deadline deadline) : asio_(std::make_unique<Asio>()) {
-  error_code error = net::error::operation_aborted;
+  static const error_code kCancelled = net::error::operation_aborted;  // by the deadline: no further address is tried
+  error_code error = kCancelled;
   error_code no_address;
-  if (const auto address = net::ip::make_address(endpoint.host, no_address); !no_address) {  // needs no resolver's thread
+  const auto address = net::ip::make_address(endpoint.host, no_address);
+  // An unknown zone would be taken for 0: the resolver says what is wrong with it.
+  const bool is_numeric = !no_address && endpoint.host.find('%') == std::string::npos;
+  if (is_numeric) {  // needs no resolver's thread
     asio_->socket.async_connect({address, endpoint.port}, [&](error_code connect_error) { error = connect_error; });
   } else {
     asio_->resolver.async_resolve(
         endpoint.host, std::to_string(endpoint.port), [&](error_code resolve_error, const tcp::resolver::results_type& found) {
           error = resolve_error;
           if (error) return;
-          net::async_connect(asio_->socket, found,
-                             [&](error_code connect_error, const tcp::endpoint&) { error = connect_error; });
+          net::async_connect(
+              asio_->socket, found, [&](const error_code& before, const tcp::endpoint&) { return before != kCancelled; },
+              [&](error_code connect_error, const tcp::endpoint&) { error = connect_error; });
         });
   }
   const bool in_time = asio_->finish(deadline);

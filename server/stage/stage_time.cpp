@@ -69,7 +69,7 @@ void Stage::settle_scene(const std::string& scene, const SceneViewPtr& before, C
   const auto view = std::make_shared<const SceneView>(SceneView{before->scene, std::move(players), next_serial_++});
   publish(scene, view);
   listener_->players_changed(view, moved, now_us);
-  std::sort(ended.begin(), ended.end());  // who ends first is told first, however late this comes
+  std::sort(ended.begin(), ended.end());  // of a scene, who ends first is told first, however late this comes
   for (const auto& [at_us, i] : ended) listener_->player_ended(view, i);
 }
 

@@ -43,6 +43,14 @@ TEST(Connection, KeepsEventsAndPacketsThatComeBeforeTheAnswer) {
   EXPECT_NE(connection.next({}).line.find("\"two\""), std::string::npos);
 }
 
+TEST(Connection, FindsAServerByItsName) {
+  FakeServer server({answers("a", Json::object(), 1)});
+  Endpoint by_name = parse_endpoint(server.address());
+  by_name.host = "localhost";
+  Connection connection(by_name, deadline_in(kPatience));
+  EXPECT_EQ(connection.call("a", Json::object(), deadline_in(kPatience)), Json(1));
+}
+
 TEST(Connection, ReadsLinesWithCarriageReturnsAndMegabytes) {
   const std::string large(3'000'000, 'x');
   FakeServer server({{"a", Json::object(),

@@ -11,6 +11,7 @@ from harness import die_with_parent
 
 HEALTHY, SLOW, STUCK = "healthy", "slow", "stuck"
 SMALL_BUFFER = 8192  # what the kernels of slow and stuck readers are asked to hold
+AWAY_S = 0.25  # a turn among the readers takes milliseconds, and is waited for no longer than a sip
 SIP_BYTES, SIP_S = 2048, 0.1  # slow ones take 20 kB a second
 ANNOUNCEMENT = b'{"jsonrpc":"2.0","method":"stream.packet"'
 BINARY_FRAME, TEXT_FRAME = 0x82, 0x81
@@ -90,21 +91,25 @@ class Reader:
 
 
 def drain(readers, seconds):
-    """Reads for so long, each in its manner."""
+    """Reads for so long, each in its manner. How long of it this process was kept from reading, in seconds."""
     now = time.monotonic()
-    end, next_sip = now + seconds, now
+    end, next_sip, away_s = now + seconds, now, 0.0
     slow = [r for r in readers if r.manner == SLOW]
     with selectors.DefaultSelector() as selector:
         for reader in readers:
             if reader.manner == HEALTHY:
                 selector.register(reader.sock, selectors.EVENT_READ, reader)
-        while (now := time.monotonic()) < end:
+        while (turn := time.monotonic()) < end:
+            if turn - now > AWAY_S:
+                away_s += turn - now
+            now = turn
             for key, _ in selector.select(max(0, min(next_sip, end) - now)):
                 key.data.take(1 << 18)
             if time.monotonic() >= next_sip:
                 next_sip += SIP_S
                 for reader in slow:
                     reader.take(SIP_BYTES)
+    return away_s
 
 
 def run(pipe, port, manners, streams, seconds):
@@ -114,8 +119,8 @@ def run(pipe, port, manners, streams, seconds):
         readers = [Reader(port, (LineClient, WebSocketClient)[i // len(streams[manner]) % 2], manner, streams[manner][i % len(streams[manner])])
                    for manner, count in manners.items() for i in range(count)]
         pipe.send("ready")
-        drain(readers, seconds)
-        pipe.send([(r.manner, r.what, r.packets) for r in readers])
+        away_s = drain(readers, seconds)
+        pipe.send((away_s, [(r.manner, r.what, r.packets) for r in readers]))
         pipe.recv()  # they stay until they are sent away
     except BaseException as error:
         pipe.send(error)
@@ -151,7 +156,8 @@ class Crowd:
         return not self.pipe.poll(seconds)
 
     def result(self):
-        """[(manner, what it watches, [(sequence, bytes)])] once it has ended; it stays connected until close()."""
+        """How many seconds it was kept from reading, and [(manner, what it watches, [(sequence, bytes)])], once it has ended; it
+        stays connected until close()."""
         return self.said(PATIENCE_S)
 
     def close(self):

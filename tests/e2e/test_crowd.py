@@ -110,7 +110,7 @@ class CrowdTest(harness.TestCase):
             pinger.ping()
             self.ask(round_trips_ms)
             most_mib = max(most_mib, self.server.rss_mib())
-        readers = people.result()
+        away_s, readers = people.result()
         stats = self.c.call("server.stats")
         self.assertEqual(stats["tweend_streams"], sum(MANNERS.values()))
         self.assertLessEqual(stats["tweend_producers"], len(self.streams) + RUNGS - 1)
@@ -132,9 +132,10 @@ class CrowdTest(harness.TestCase):
                 shares.setdefault((manner, what), []).append(share(packets, given[what] if manner == crowd.HEALTHY else produced))
         budget_mib = self.budget_mib(largest) * (6 if self.server.sanitized() else 1)
         self.tell(shares, round_trips_ms, most_mib - before_mib, budget_mib, stats)
-        # What reached none of them was replaced while this machine was away, not while one of them was served badly.
+        # What was replaced while all of them were kept from reading is not the server's fault.
+        least = 0.98 - away_s / self.seconds
         for what, numbers in given.items():
-            self.assertGreaterEqual(len(numbers), 0.98 * (max(numbers) - min(numbers) + 1), what)
+            self.assertGreaterEqual(len(numbers), least * (max(numbers) - min(numbers) + 1), f"{what}, away for {away_s:.1f} s")
         for (manner, what), kept in shares.items():
             if manner == crowd.HEALTHY:
                 self.assertGreaterEqual(min(kept), 0.98, f"{what}: {sorted(kept)[:5]}")

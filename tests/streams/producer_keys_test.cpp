@@ -189,6 +189,7 @@ TEST_F(Keys, ThatAreAskedForAreAQuarterOfASecondApart) {
     if (is(packet, kFlagKey)) {
       keys_us.push_back(at_us);
     } else {
+      ASSERT_FALSE(keys_us.empty());
       EXPECT_LT(at_us - keys_us.back(), 250'000) << "and no further";
     }
   }
