@@ -54,7 +54,7 @@ inline constexpr SmallestThree kIdentity{kZero | 0x8000, kZero | 0x8000, kZero};
 
 /// @param q  is given xyzw, unit
 inline void unpack(const SmallestThree& words, float* q) noexcept {
-  const unsigned largest = (words[0] >> 15U) | (words[1] >> 15U) << 1U;
+  const auto largest = static_cast<unsigned>(words[0] >> 15 | (words[1] >> 15) << 1);
   const std::array<int, 3> small = steps(words);
   double rest = 1.0;
   unsigned word = 0;

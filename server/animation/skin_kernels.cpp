@@ -48,8 +48,8 @@ HWY_INLINE hn::Vec<Tag> weighted_floats(Tag d, const std::uint16_t* entries, con
   return sum;
 }
 
-/// Stores rows 0 and 1 of a matrix.
-HWY_INLINE void store_pair(hn::Vec<PairTag> rows, float* row0, float* row1) {
+/// Stores rows 0 and 1 of a matrix. Not for vectors that have no room for both.
+[[maybe_unused]] HWY_INLINE void store_pair(hn::Vec<PairTag> rows, float* row0, float* row1) {
 #if HWY_TARGET != HWY_SCALAR
   if constexpr (kPairLanes == 8) {
     const hn::Half<PairTag> half;

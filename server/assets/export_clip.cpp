@@ -90,7 +90,7 @@ Result<GlbSamples> merged(const Tracks& weights, const std::vector<float>& other
   if (span.closed) times = {0.0, span.duration_s};
   for (const auto& [channel, track] : weights) times.insert(times.end(), track.times_s.begin(), track.times_s.end());
   std::ranges::sort(times);
-  times.erase(std::ranges::unique(times).begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
   return bake(source, limits);
 }
 

@@ -33,7 +33,7 @@ Piece piece_of(const model::Mesh& mesh, const model::MeshPart& part, bool whole)
   }
   piece.vertices = piece.indices;
   std::ranges::sort(piece.vertices);
-  piece.vertices.erase(std::ranges::unique(piece.vertices).begin(), piece.vertices.end());
+  piece.vertices.erase(std::unique(piece.vertices.begin(), piece.vertices.end()), piece.vertices.end());
   for (std::uint32_t& i : piece.indices) {
     i = static_cast<std::uint32_t>(std::ranges::lower_bound(piece.vertices, i) - piece.vertices.begin());
   }
