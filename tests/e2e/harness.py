@@ -197,6 +197,10 @@ class TestCase(unittest.TestCase):
         """Since it held so much, the server has grown by less than that; a sanitizer holds a multiple of it."""
         self.assertLess(self.server.rss_mib() - before_mib, mib * (6 if self.server.sanitized() else 1))
 
+    def keeps_up(self, in_a_window, what):
+        """In one of three windows of time: in another this machine may have been away."""
+        self.assertTrue(any(in_a_window() for _ in range(3)), what)
+
     def paced(self, packets, rate):
         """Each was made at a reading of the rate's grid, or more than a period after the one before: the machine was away.
         The shortest time between two, in periods."""

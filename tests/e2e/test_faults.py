@@ -282,10 +282,10 @@ class HalfDead(BadLinks):
         before = self.server.rss_mib()
         self.c.unread.clear()
 
-        def most_of_them():  # as soon as nothing but the others could hold it up
+        def most_of_them():
             packets = [self.c.packet(stream) for _ in range(60)]
             return len(packets) >= 0.7 * (packets[-1].sequence - packets[0].sequence + 1)
-        wait_until(most_of_them, "most of what is made reaches who reads")
+        self.keeps_up(most_of_them, "most of what is made reaches who reads")
         self.grew_less(before, 16)
         self.assertEqual(self.stats()["tweend_streams"], 11)
         self.c.call("stream.close", stream=stream)

@@ -219,7 +219,7 @@ class SlowViewers(Viewers):
                 packets.append(self.c.packet(stream))
             produced = packets[-1].sequence - packets[0].sequence + 1
             return produced > 8 and len(packets) > 0.7 * produced
-        wait_until(healthy, "of more than 8 pictures in 1.5 s, 0.7 come")
+        self.keeps_up(healthy, "of more than 8 pictures in 1.5 s, 0.7 come")
         self.grew_less(before, 48)
         for c in stuck:
             c.close()

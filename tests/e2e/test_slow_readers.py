@@ -35,7 +35,7 @@ class SlowReaders(harness.TestCase):
                 packets.append(self.c.packet(self.stream))
             produced = packets[-1].sequence - packets[0].sequence + 1
             return produced > at_least and len(packets) > share * produced
-        wait_until(healthy, f"of more than {at_least} packets in {seconds} s, {share} come")
+        self.keeps_up(healthy, f"of more than {at_least} packets in {seconds} s, {share} come")
 
     def test_a_healthy_reader_beside_stuck_ones(self):
         stuck = [self.stuck() for _ in range(12)]
